@@ -1,0 +1,1 @@
+"""Track initiation as numerics: arrays in, arrays out; no files, no screens."""

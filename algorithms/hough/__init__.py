@@ -1,0 +1,1 @@
+"""The Hough transform of lines: geometry, grid, votes, peaks."""

@@ -1,0 +1,1 @@
+"""The initiators: one module each, found by themselves; see `registry`."""

@@ -1,0 +1,69 @@
+"""What an initiator is."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar
+
+from algorithms.association import with_states
+from algorithms.context import Context
+from algorithms.hough.voting import Accumulator
+from algorithms.parameters import Parameters
+from algorithms.plots import PlotChunk, Plots
+from algorithms.tracks import TrackChunk, Tracks
+
+
+class Initiator(ABC):
+    """An algorithm from plots to tracks.
+
+    An initiator in plain Python gives `initiate` alone; its trials then run in worker
+    processes. One whose kernels release the interpreter's lock is a `ChunkInitiator`: its
+    chunks run in threads.
+
+    Attributes
+    ----------
+    name : what it is called everywhere
+    summary : one line for people
+    source : where it is published
+    parameters : the model that declares its parameters
+    """
+
+    name: ClassVar[str]
+    summary: ClassVar[str]
+    source: ClassVar[str] = ""
+    parameters: ClassVar[type[Parameters]]
+
+    @abstractmethod
+    def initiate(self, plots: Plots, context: Context, parameters: Any) -> Tracks:
+        """Return the tracks of one batch of plots.
+
+        Parameters
+        ----------
+        plots : the batch, sorted by scan
+        context : what is known of the sensor
+        parameters : resolved parameters, of the type that the initiator declares
+        """
+
+    def accumulator(self, plots: Plots, context: Context, parameters: Any) -> Accumulator | None:
+        """Return the votes of one batch; None for an initiator that has no accumulator."""
+        return None
+
+
+class ChunkInitiator(Initiator):
+    """An initiator that works on a chunk of trials in compiled code."""
+
+    @abstractmethod
+    def initiate_chunk(self, chunk: PlotChunk, context: Context, parameters: Any) -> TrackChunk:
+        """Return the tracks of each trial of a chunk, as lines."""
+
+    @abstractmethod
+    def associate_chunk(
+        self, chunk: PlotChunk, tracks: TrackChunk, context: Context, parameters: Any
+    ) -> TrackChunk:
+        """Return the tracks of `initiate_chunk` with their plots."""
+
+    def initiate(self, plots: Plots, context: Context, parameters: Any) -> Tracks:
+        """Return the tracks of one batch, with their plots and kinematic states."""
+        chunk = plots.chunk()
+        found = self.initiate_chunk(chunk, context, parameters)
+        return with_states(plots, self.associate_chunk(chunk, found, context, parameters))

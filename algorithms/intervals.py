@@ -1,0 +1,57 @@
+"""Confidence intervals of rates and means."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+Z95 = 1.959963984540054
+"""Quantile of the standard normal distribution for two-sided 95 %."""
+
+
+def wilson(rate: float, count: float, z: float = Z95) -> tuple[float, float]:
+    """Return the Wilson score interval of a rate found in so many independent observations.
+
+    Parameters
+    ----------
+    rate : found rate, in [0, 1]
+    count : number of observations, > 0; need not be whole
+    z : normal quantile
+
+    References
+    ----------
+    E. B. Wilson, Journal of the American Statistical Association 22, 1927.
+    """
+    shrink = 1.0 + z * z / count
+    centre = (rate + 0.5 * z * z / count) / shrink
+    half = z / shrink * math.sqrt(max(0.0, rate * (1.0 - rate) / count + 0.25 * z * z / count**2))
+    # Rounding must not put the bounds of 0 and 1 beyond the rate itself.
+    return max(0.0, min(rate, centre - half)), min(1.0, max(rate, centre + half))
+
+
+def effective_count(values: ArrayLike) -> float:
+    """Return how many independent yes-or-no observations would be as uncertain as the mean of these.
+
+    Parameters
+    ----------
+    values : per-trial values in [0, 1], shape (n,), n ≥ 1
+
+    Notes
+    -----
+    For n values of 0 and 1 it is n. It lies above n where a trial holds several targets that are found
+    independently of each other, and below where they are not. Without spread it is n.
+    """
+    values = np.asarray(values, dtype=float)
+    mean = float(values.mean())
+    variance = float(values.var())
+    if variance <= 0.0 or not 0.0 < mean < 1.0:
+        return float(len(values))
+    return len(values) * mean * (1.0 - mean) / variance
+
+
+def mean_interval(values: ArrayLike, z: float = Z95) -> tuple[float, float]:
+    """Return the interval of the mean of per-trial values in [0, 1], by Wilson's formula."""
+    values = np.asarray(values, dtype=float)
+    return wilson(float(values.mean()), effective_count(values), z)

@@ -1,0 +1,70 @@
+"""Plots: the columns of one batch of detections, and of a chunk of batches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class Plots:
+    """One batch of detections as columns of equal length n, sorted by scan.
+
+    Attributes
+    ----------
+    scan : int32 (n,), numbered from 0
+    time : float64 (n,), seconds
+    position : float64 (n, 2) or (n, 3), in the unit of the scenario
+    amplitude, doppler : float64 (n,), where the sensor gives them
+    """
+
+    scan: NDArray[np.int32]
+    time: NDArray[np.float64]
+    position: NDArray[np.float64]
+    amplitude: NDArray[np.float64] | None = None
+    doppler: NDArray[np.float64] | None = None
+
+    def __len__(self) -> int:
+        return len(self.scan)
+
+    @property
+    def first_time(self) -> float:
+        """Time of the batch's first scan that holds a plot, in seconds; 0 without plots."""
+        return float(self.time[0]) if len(self) else 0.0
+
+    def chunk(self) -> PlotChunk:
+        """Return the chunk that holds this batch alone."""
+        return PlotChunk(self.scan, self.time, self.position, np.array([0, len(self)], dtype=np.int64))
+
+
+@dataclass(frozen=True, slots=True)
+class PlotChunk:
+    """The plots of several trials, one after the other.
+
+    Attributes
+    ----------
+    scan, time, position : as in `Plots`, sorted by trial, then by scan
+    offsets : int64 (trials + 1,), where each trial's plots begin, and the end of the last
+    """
+
+    scan: NDArray[np.int32]
+    time: NDArray[np.float64]
+    position: NDArray[np.float64]
+    offsets: NDArray[np.int64] = field(default_factory=lambda: np.zeros(1, dtype=np.int64))
+
+    @property
+    def trials(self) -> int:
+        """Number of trials."""
+        return len(self.offsets) - 1
+
+    @property
+    def largest(self) -> int:
+        """Number of plots of the largest trial."""
+        return int(np.diff(self.offsets).max(initial=0))
+
+    def trial(self, index: int) -> Plots:
+        """Return the plots of one trial (views, not copies)."""
+        rows = slice(self.offsets[index], self.offsets[index + 1])
+        return Plots(self.scan[rows], self.time[rows], self.position[rows])

@@ -1,0 +1,154 @@
+"""Tracks against truth: which targets were found, which tracks are false, which are duplicates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import kernel
+from algorithms.hough.lines import separation
+from algorithms.tracks import TrackChunk
+
+FALSE, FINDER, DUPLICATE = 0, 1, 2
+"""States of a track: it matches no target; it is the first to match one; others were before it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Criterion:
+    """When a track matches a target: by its line, or by the plots that they share.
+
+    Attributes
+    ----------
+    rho : greatest difference in ρ; None to match by plots
+    theta : greatest difference in θ, radians; None compares ρ alone, as it stands in normal
+        form, which is how the course report counts
+    plots : least number of a track's plots that came from the target; None to match by line
+    """
+
+    rho: float | None = None
+    theta: float | None = None
+    plots: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """The targets of a chunk.
+
+    Attributes
+    ----------
+    theta, rho : float64 (targets,), their lines in normal form; NaN for a target that stands still
+    origin : int32 (plots of the chunk,), the target that caused each plot, −1 for clutter
+    """
+
+    theta: NDArray[np.float64]
+    rho: NDArray[np.float64]
+    origin: NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True)
+class Scores:
+    """What a criterion says of the tracks of a chunk, one row a trial.
+
+    Attributes
+    ----------
+    found : bool (trials, targets), whether at least one track matches
+    false : int64 (trials,), tracks that match no target
+    duplicates : int64 (trials,), tracks that match only targets that an earlier track matched
+    state : int8 (tracks,), `FALSE`, `FINDER` or `DUPLICATE`, of each track
+    theta_error, rho_error : float64 (trials, targets), of the matching track with the highest
+        score (of equals, the nearest in ρ), signed, across the seam at 0 and π; NaN where none
+    """
+
+    found: NDArray[np.bool_]
+    false: NDArray[np.int64]
+    duplicates: NDArray[np.int64]
+    state: NDArray[np.int8]
+    theta_error: NDArray[np.float64]
+    rho_error: NDArray[np.float64]
+
+
+@kernel
+def _matches_line(angle, distance, plain, tolerance_rho, tolerance_theta):  # type: ignore[no-untyped-def]
+    if np.isnan(tolerance_theta):
+        return abs(plain) <= tolerance_rho
+    return abs(angle) <= tolerance_theta and abs(distance) <= tolerance_rho
+
+
+@kernel
+def _score(  # type: ignore[no-untyped-def]
+    offsets, theta, rho, rank, shared, true_theta, true_rho, tolerance_rho, tolerance_theta, least_plots
+):
+    trials, targets = len(offsets) - 1, len(true_theta)
+    found = np.zeros((trials, targets), np.bool_)
+    false, duplicates = np.zeros(trials, np.int64), np.zeros(trials, np.int64)
+    state = np.full(len(theta), FALSE, np.int8)
+    theta_error = np.full((trials, targets), np.nan)
+    rho_error = np.full((trials, targets), np.nan)
+    best = np.empty(targets, np.float64)
+    for trial in range(trials):
+        best[:] = -np.inf
+        for track in range(offsets[trial], offsets[trial + 1]):
+            matches, is_new = False, False
+            for target in range(targets):
+                angle, distance = separation(theta[track], rho[track], true_theta[target], true_rho[target])
+                if least_plots > 0:
+                    matched = shared[track, target] >= least_plots
+                else:
+                    plain = rho[track] - true_rho[target]
+                    matched = _matches_line(angle, distance, plain, tolerance_rho, tolerance_theta)
+                if not matched:
+                    continue
+                matches = True
+                is_new = is_new or not found[trial, target]
+                found[trial, target] = True
+                nearer = rank[track] == best[target] and abs(distance) < abs(rho_error[trial, target])
+                if rank[track] > best[target] or nearer:
+                    best[target] = rank[track]
+                    theta_error[trial, target] = angle
+                    rho_error[trial, target] = distance
+            if not matches:
+                false[trial] += 1
+            elif is_new:
+                state[track] = FINDER
+            else:
+                state[track] = DUPLICATE
+                duplicates[trial] += 1
+    return found, false, duplicates, state, theta_error, rho_error
+
+
+@kernel
+def _shared(plots, track_offsets, plot_offsets, origin, targets):  # type: ignore[no-untyped-def]
+    shared = np.zeros((len(plots), targets), np.int64)
+    for trial in range(len(track_offsets) - 1):
+        for track in range(track_offsets[trial], track_offsets[trial + 1]):
+            for row in plots[track]:
+                if row >= 0 and origin[plot_offsets[trial] + row] >= 0:
+                    shared[track, origin[plot_offsets[trial] + row]] += 1
+    return shared
+
+
+def score(tracks: TrackChunk, truth: Truth, plot_offsets: NDArray[np.int64], criterion: Criterion) -> Scores:
+    """Return what a criterion says of the tracks of a chunk.
+
+    Parameters
+    ----------
+    tracks : the tracks; with their plots where the criterion asks for plots
+    truth : the targets
+    plot_offsets : int64 (trials + 1,), where each trial's plots begin
+    criterion : when a track matches a target
+    """
+    least = 0 if criterion.plots is None else criterion.plots
+    if least:
+        assert tracks.plots is not None
+        shared = _shared(tracks.plots, tracks.offsets, plot_offsets, truth.origin, len(truth.theta))
+    else:
+        shared = np.zeros((0, 0), np.int64)
+    columns = _score(
+        tracks.offsets, tracks.theta, tracks.rho, tracks.score, shared, truth.theta, truth.rho,
+        np.nan if criterion.rho is None else criterion.rho,
+        np.nan if criterion.theta is None else criterion.theta,
+        least,
+    )  # fmt: skip
+    return Scores(*columns)

@@ -1,0 +1,78 @@
+"""Tracks: what an initiator returns, for one batch and for a chunk of batches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class Tracks:
+    """The tracks that an initiator found in one batch of plots, as columns of length m.
+
+    Attributes
+    ----------
+    theta, rho : float64 (m,), the line in normal form, θ in [0, π) radians; for an
+        accumulating initiator the centre of its cell
+    score : float64 (m,), what the initiator ranks by (for the accumulating ones: votes)
+    plots : for each track the rows of its plots, at most one a scan, in order of scan
+    position, velocity : float64 (m, 2), least-squares state at `time`; NaN where plots of
+        fewer than two scans leave it open
+    fitted_theta, fitted_rho : float64 (m,), the line of that state; NaN where it is open
+    time : seconds, the time of the batch's first scan
+    """
+
+    theta: NDArray[np.float64]
+    rho: NDArray[np.float64]
+    score: NDArray[np.float64]
+    plots: tuple[NDArray[np.int64], ...]
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    fitted_theta: NDArray[np.float64]
+    fitted_rho: NDArray[np.float64]
+    time: float
+
+    def __len__(self) -> int:
+        return len(self.theta)
+
+    def chosen(self, order: NDArray[np.intp]) -> Tracks:
+        """Return some of the tracks, in the given order."""
+        return Tracks(
+            self.theta[order],
+            self.rho[order],
+            self.score[order],
+            tuple(self.plots[index] for index in order),
+            self.position[order],
+            self.velocity[order],
+            self.fitted_theta[order],
+            self.fitted_rho[order],
+            self.time,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class TrackChunk:
+    """The tracks of several trials, one after the other, as lines.
+
+    Attributes
+    ----------
+    offsets : int64 (trials + 1,), where each trial's tracks begin, and the end of the last
+    theta, rho, score : float64 (m,), as in `Tracks`
+    votes_outside : int64 (trials,), votes that fell outside the grid (zeros without a grid)
+    plots : int64 (m, k) or None, the rows of each track's plots counted from the beginning
+        of its trial, −1 where there are fewer than k; None until association has run
+    """
+
+    offsets: NDArray[np.int64]
+    theta: NDArray[np.float64]
+    rho: NDArray[np.float64]
+    score: NDArray[np.float64]
+    votes_outside: NDArray[np.int64]
+    plots: NDArray[np.int64] | None = None
+
+    @property
+    def counts(self) -> NDArray[np.int64]:
+        """Number of tracks of each trial."""
+        return np.diff(self.offsets)

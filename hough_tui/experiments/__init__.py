@@ -1,0 +1,1 @@
+"""Experiments: plan, chunks of trials, tallies, store."""

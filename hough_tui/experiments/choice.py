@@ -1,0 +1,60 @@
+"""Choosing a scenario of a set by name, changing its fields, and the seed that its experiments use."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from algorithms.errors import RequestError
+from algorithms.parameters import FieldError, replaced, unknown
+from scenarios.marked_yaml import read
+from scenarios.model import Scenario, ScenarioSet
+from scenarios.sweeps import place
+
+
+def chosen_scenario(given: ScenarioSet, name: str | None) -> Scenario:
+    """Return a scenario of a set; without a name the only one.
+
+    Raises
+    ------
+    RequestError
+        Where there is none of that name, or several and no name is given.
+    """
+    names = [scenario.name for scenario in given.scenarios]
+    if name is None:
+        if len(names) > 1:
+            raise RequestError(f"{given.name} has {len(names)} scenarios; choose one: {', '.join(names)}")
+        return given.scenarios[0]
+    if name not in names:
+        raise RequestError(unknown(name, names, "scenario"))
+    return given.scenario(name)
+
+
+def changed(scenario: Scenario, assignments: Sequence[str]) -> Scenario:
+    """Return a scenario with numeric fields changed by `key=value`, keys as in a sweep.
+
+    Raises
+    ------
+    RequestError
+        Where a key names no numeric field, or the value is not allowed.
+    """
+    for assignment in assignments:
+        key, equals, value = assignment.partition("=")
+        if not equals:
+            raise RequestError(f"--set {assignment}: this is not of the form key=value")
+        try:
+            _, path = place(key, scenario, [])
+        except FieldError as error:
+            raise RequestError(f"--set {assignment}: {error.problem.message}") from None
+        try:
+            scenario = replaced(scenario, path, read(value, f"--set {key}").data)
+        except FieldError as error:
+            raise RequestError(f"--set {assignment}: {error}") from None
+    return scenario
+
+
+def seed_of(given: ScenarioSet, scenario: Scenario) -> int:
+    """Return the seed of the first experiment on a scenario; 1 where there is none."""
+    for experiment in given.experiments:
+        if scenario.name in (found.name for found in given.chosen_scenarios(experiment)):
+            return experiment.seed
+    return 1

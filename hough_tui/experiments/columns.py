@@ -1,0 +1,75 @@
+"""Per-trial columns: what each trial of a cell gave."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.scoring import Scores
+from algorithms.tracks import TrackChunk
+
+
+@dataclass(frozen=True, slots=True)
+class TrialColumns:
+    """The columns of one cell, one row a trial.
+
+    Attributes
+    ----------
+    found : bool (trials, targets), whether the target was found
+    tracks, false, duplicates : int32 (trials,), numbers of tracks
+    theta_error, rho_error : float32 (trials, targets), radians and the unit of length; NaN
+        where the target was not found
+    votes_outside : int64 (trials,)
+    control_found : bool (trials, targets), whether the draw without targets seems to have the
+        target; no rows where the experiment has no control
+    """
+
+    found: NDArray[np.bool_]
+    tracks: NDArray[np.int32]
+    false: NDArray[np.int32]
+    duplicates: NDArray[np.int32]
+    theta_error: NDArray[np.float32]
+    rho_error: NDArray[np.float32]
+    votes_outside: NDArray[np.int64]
+    control_found: NDArray[np.bool_]
+
+    @classmethod
+    def empty(cls, trials: int, targets: int, *, control: bool) -> TrialColumns:
+        """Return columns to be filled chunk by chunk."""
+        return cls(
+            np.zeros((trials, targets), np.bool_),
+            np.zeros(trials, np.int32),
+            np.zeros(trials, np.int32),
+            np.zeros(trials, np.int32),
+            np.full((trials, targets), np.nan, np.float32),
+            np.full((trials, targets), np.nan, np.float32),
+            np.zeros(trials, np.int64),
+            np.zeros((trials if control else 0, targets), np.bool_),
+        )
+
+    def fill(
+        self, first: int, tracks: TrackChunk, scores: Scores, control_found: NDArray[np.bool_] | None
+    ) -> None:
+        """Put in the trials of a chunk that begins at trial `first`."""
+        rows = slice(first, first + len(tracks.counts))
+        self.found[rows] = scores.found
+        self.tracks[rows] = tracks.counts
+        self.false[rows] = scores.false
+        self.duplicates[rows] = scores.duplicates
+        self.theta_error[rows] = scores.theta_error
+        self.rho_error[rows] = scores.rho_error
+        self.votes_outside[rows] = tracks.votes_outside
+        if control_found is not None:
+            self.control_found[rows] = control_found
+
+    def part(self, rows: slice | NDArray[np.bool_]) -> TrialColumns:
+        """Return the columns of some of the trials."""
+        control = self.control_found[rows] if len(self.control_found) else self.control_found
+        values = {field.name: getattr(self, field.name)[rows] for field in fields(self)[:-1]}
+        return TrialColumns(**values, control_found=control)
+
+    def arrays(self) -> dict[str, NDArray[np.generic]]:
+        """Return the columns by name."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}

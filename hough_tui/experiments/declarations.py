@@ -1,0 +1,64 @@
+"""What an initiator declares of itself, as a document."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel
+
+from algorithms.initiators.base import Initiator
+
+
+def declaration(algorithm: Initiator) -> dict[str, Any]:
+    """Return name, summary, source and parameters of an initiator.
+
+    Each parameter has `name` (dotted), `default`, `allowed`, `dimension` and `help`.
+    """
+    return {
+        "name": algorithm.name,
+        "summary": algorithm.summary,
+        "source": algorithm.source,
+        "parameters": list(_parameters(algorithm.parameters, "")),
+    }
+
+
+def _parameters(model: type[BaseModel], prefix: str) -> list[dict[str, Any]]:
+    schema = model.model_json_schema()
+    declared: list[dict[str, Any]] = []
+    for name, field in model.model_fields.items():
+        if isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel):
+            declared += _parameters(field.annotation, f"{prefix}{name}.")
+            continue
+        described = schema["properties"][name]
+        declared.append(
+            {
+                "name": f"{prefix}{name}",
+                "default": described.get("default"),
+                "allowed": _allowed(described),
+                "dimension": described.get("dimension"),
+                "auto": described.get("auto"),
+                "help": field.description,
+            }
+        )
+    return declared
+
+
+def _allowed(schema: dict[str, Any]) -> str:
+    if "anyOf" in schema:
+        return " or ".join(_allowed(alternative) for alternative in schema["anyOf"])
+    if "enum" in schema:
+        return ", ".join(map(str, schema["enum"]))
+    if "const" in schema:
+        return str(schema["const"])
+    if schema.get("type") == "array":
+        return "[" + ", ".join(_allowed(item) for item in schema.get("prefixItems", ())) + "]"
+    names = {
+        "number": "number",
+        "integer": "whole number",
+        "null": "none",
+        "string": "text",
+        "boolean": "true, false",
+    }
+    bounds = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
+    limits = [f"{sign} {schema[key]:g}" for key, sign in bounds.items() if key in schema]
+    return " ".join([names.get(schema.get("type", ""), "value"), *([", ".join(limits)] if limits else [])])

@@ -1,0 +1,1 @@
+"""What results look like: tables, charts and progress for a terminal, texts for files."""

@@ -1,0 +1,241 @@
+"""Sheets: columns of text with a title and notes, and how they fit into a terminal's width."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from rich import box
+from rich.cells import cell_len
+from rich.table import Table
+from rich.text import Text
+
+GAP = 2
+COMFORTABLE_PROSE = 16
+NARROWEST_PROSE = 11
+LUXURY = 40
+"""Columns from this rank on leave before names are broken into narrow lines."""
+
+WIDEST_NOTES = 100
+"""Longer lines of running text are hard to read."""
+
+KEPT_TOGETHER = re.compile(r"(?<=[θρ≤]) | (?=[≤%°])")
+REPEATED = "dim"
+NO_BREAK = "\N{NO-BREAK SPACE}"
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column of a sheet.
+
+    Attributes
+    ----------
+    heading : one to three lines
+    cells : one text a row; those of figures are lined up already
+    rank : 0 for a column that always stays; of the others the greatest leaves first; columns of
+        one rank leave together
+    prose : text, flush left, that may be broken into lines; else figures, flush right, never broken
+    quiet : drawn dim
+    called : what a note calls the column when there is no room for it; by default its heading
+    styles : the style of single cells, by row; empty for none
+    """
+
+    heading: str
+    cells: tuple[str, ...]
+    rank: int = 0
+    prose: bool = False
+    quiet: bool = False
+    called: str = ""
+    styles: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The heading in one line."""
+        return re.sub(r"(?<=[-._])\n(?!/)", "", self.heading).replace("\n", " ")
+
+    @property
+    def natural(self) -> int:
+        """Width without any line break."""
+        return max(_width(self.heading), *map(_width, self.cells), 1)
+
+    def least(self, prose: int) -> int:
+        """Return the smallest width, given the one that prose may be broken at."""
+        return min(self.natural, max(_width(self.heading), prose)) if self.prose else self.natural
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A table before it has a width.
+
+    Attributes
+    ----------
+    title : one line
+    columns : all that there is to show
+    notes : sentences below it
+    warnings : sentences below it that change how it is to be read
+    """
+
+    title: str
+    columns: tuple[Column, ...]
+    notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+def sheet_table(sheet: Sheet, width: int) -> Table:
+    """Return the table of a sheet, with the columns that the width has room for.
+
+    Parameters
+    ----------
+    sheet : what to show
+    width : of the terminal, in cells
+    """
+    shown, left_out = chosen(sheet.columns, width)
+    widths = _widths(shown, width)
+    notes = list(sheet.notes)
+    if left_out:
+        names = dict.fromkeys(column.called or column.name for column in left_out)
+        notes.append(f"A wider terminal also shows {enumerated(list(names))}.")
+    # The empty line keeps the notes apart from the last row where there is no colour.
+    below = ["", *notes, *sheet.warnings] if notes or sheet.warnings else []
+    styles = ["", *["dim"] * len(notes), *[""] * len(sheet.warnings)]
+    table = Table(
+        box=box.SIMPLE_HEAD,
+        show_edge=False,
+        pad_edge=False,
+        padding=(0, GAP - 1, 0, 0),
+        header_style="bold",
+        title=_lines([sheet.title], width, ["bold"]) if sheet.title else None,
+        title_justify="left",
+        title_style="",
+        caption=_lines(below, width, styles),
+        caption_justify="left",
+        caption_style="",
+    )
+    depth = max((column.heading.count("\n") + 1 for column in shown), default=0)
+    for column, room in zip(shown, widths, strict=True):
+        lines = column.heading.split("\n")
+        heading = [""] * (depth - len(lines)) + [
+            line if column.prose else _right(line, room) for line in lines
+        ]
+        style = "dim" if column.quiet else ""
+        table.add_column(Text("\n".join(heading)), width=room, overflow="fold", style=style)
+    columns = [_cells(column, room) for column, room in zip(shown, widths, strict=True)]
+    for cells in zip(*columns, strict=True):
+        table.add_row(*cells)
+    return table
+
+
+def chosen(columns: Sequence[Column], width: int) -> tuple[list[Column], list[Column]]:
+    """Return the columns that fit, in their order, and those that do not, the most wanted first."""
+    shown, left_out = list(columns), []
+    for rank in sorted({column.rank for column in columns if column.rank > 0}, reverse=True):
+        prose = COMFORTABLE_PROSE if rank >= LUXURY else NARROWEST_PROSE
+        if sum(column.least(prose) for column in shown) + GAP * (len(shown) - 1) <= width:
+            break
+        left_out += [column for column in shown if column.rank == rank]
+        shown = [column for column in shown if column.rank != rank]
+    return shown, left_out[::-1]
+
+
+def enumerated(names: Sequence[str]) -> str:
+    """Return names as a list in a sentence."""
+    if len(names) < 2:
+        return "".join(names)
+    return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def broken(name: str, width: int) -> str:
+    """Return a name broken into lines after its hyphens, dots, underscores and blanks.
+
+    Parameters
+    ----------
+    name : such as `sequential-200` or `grid.theta_bins`
+    width : of a line; a piece that is longer stays whole
+    """
+    pieces, begin = [], 0
+    for index, letter in enumerate(name):
+        if letter in "-._ /":
+            pieces.append(name[begin : index + 1])
+            begin = index + 1
+    pieces.append(name[begin:])
+    lines = [""]
+    for piece in pieces:
+        if lines[-1] and cell_len(lines[-1] + piece.rstrip()) > width:
+            lines.append("")
+        lines[-1] += piece
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def repeats(names: Iterable[str]) -> tuple[str, ...]:
+    """Return styles that dim a name which only repeats the one above it."""
+    styles, above = [], None
+    for name in names:
+        styles.append(REPEATED if name == above else "")
+        above = name
+    return tuple(styles)
+
+
+def _width(text: str) -> int:
+    return max((cell_len(line) for line in text.split("\n")), default=0)
+
+
+def _widths(columns: Sequence[Column], width: int) -> list[int]:
+    """Share what the figures leave among the columns of prose, cell by cell."""
+    widths = [column.least(NARROWEST_PROSE) for column in columns]
+    spare = width - sum(widths) - GAP * (len(columns) - 1)
+    growing = True
+    while growing and spare > 0:
+        growing = False
+        for index, column in enumerate(columns):
+            if spare > 0 and widths[index] < column.natural:
+                widths[index] += 1
+                spare -= 1
+                growing = True
+    # A terminal too narrow even for what must stay breaks names harder.
+    while spare < 0:
+        prose = [index for index, column in enumerate(columns) if column.prose and widths[index] > 4]
+        if not prose:
+            break
+        widths[max(prose, key=widths.__getitem__)] -= 1
+        spare += 1
+    return widths
+
+
+def _cells(column: Column, room: int) -> list[Text]:
+    is_broken = room < column.natural
+    cells = []
+    for text, style in zip(column.cells, column.styles or [""] * len(column.cells), strict=True):
+        if is_broken and style == REPEATED:
+            # A name of several lines, over and over, would drown the figures.
+            text = ""
+        elif not column.prose:
+            text = _right(text, room)
+        elif " " not in text and cell_len(text) > room:
+            text = broken(text, room)
+        cells.append(Text(text, style=style))
+    return cells
+
+
+def _right(text: str, room: int) -> str:
+    """Return a text filled up on the left.
+
+    rich's own flush right strips the blanks at the end that keep decimal points in line.
+    """
+    return " " * (room - cell_len(text)) + text
+
+
+def _lines(sentences: Sequence[str], width: int, styles: Sequence[str]) -> Text | None:
+    """Return sentences broken for the terminal.
+
+    rich would break them at the width of the table, which may be a narrow one in a wide terminal.
+    """
+    if not sentences:
+        return None
+    text = Text(no_wrap=True, overflow="ignore")
+    for index, (sentence, style) in enumerate(zip(sentences, styles, strict=False)):
+        kept = KEPT_TOGETHER.sub(NO_BREAK, sentence)
+        lines = textwrap.wrap(kept, min(width, WIDEST_NOTES), break_on_hyphens=False)
+        text.append("\n" if index else "").append("\n".join(lines).replace(NO_BREAK, " "), style=style)
+    return text

@@ -1,0 +1,61 @@
+"""What the quantities of a result row are called, and which are shares of 1."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Metric:
+    """One measured quantity.
+
+    Attributes
+    ----------
+    words : its name for people, without a unit
+    unit : `%`, `°`, …; empty for a plain number
+    share : it lies between 0 and 1 and is shown as per cent
+    interval : the key of its interval in a row, if it has one
+    """
+
+    words: str
+    unit: str = ""
+    share: bool = False
+    interval: str | None = None
+
+    @property
+    def label(self) -> str:
+        """Name and unit."""
+        return f"{self.words} {self.unit}".rstrip()
+
+
+KNOWN = {
+    "success_rate": Metric("success", "%", True, "success_ci95"),
+    "success_control": Metric("control", "%", True, "success_control_ci95"),
+    "false_track_ratio": Metric("false", "%", True, "false_track_ratio_ci95"),
+    "p_detection": Metric("detection", "%", True),
+    "false_tracks_per_trial": Metric("false tracks a trial"),
+    "duplicates_per_trial": Metric("duplicates a trial"),
+    "tracks_per_trial": Metric("tracks a trial"),
+    "trials_without_track": Metric("trials without track"),
+    "votes_outside_per_trial": Metric("votes outside the grid a trial"),
+    "theta_rmse_deg": Metric("θ RMSE", "°"),
+    "rho_rmse": Metric("ρ RMSE"),
+    "seconds_per_trial": Metric("time a trial", "s"),
+}
+
+
+def metric(name: str) -> Metric:
+    """Return what a metric is called; one that is not known goes by its own name."""
+    if name in KNOWN:
+        return KNOWN[name]
+    words = name.replace("_", " ")
+    if name.endswith(("_rate", "_ratio")):
+        return Metric(words, "%", True)
+    if name.endswith("_deg"):
+        return Metric(words.removesuffix(" deg"), "°")
+    return Metric(words)
+
+
+def field_name(key: str) -> str:
+    """Return a swept key without the part that says where its field belongs."""
+    return key.removeprefix("scenario.").removeprefix("initiator.")

@@ -1,0 +1,76 @@
+"""What a set must satisfy across its parts: names are unique and known, sweeps reach fields, grids fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from algorithms.errors import RequestError
+from algorithms.parameters import FieldError, Problem, unknown
+from scenarios.model import Experiment, InitiatorEntry, Scenario, ScenarioSet
+from scenarios.sweeps import points
+
+
+def inconsistencies(given: ScenarioSet) -> Iterator[Problem]:
+    """Yield what is wrong across the parts of a set, each with its path in the set."""
+    names = list(_repeated_names(given))
+    yield from names
+    if names:
+        return
+    for index, experiment in enumerate(given.experiments):
+        path = ("experiments", index)
+        found = [*_unknown_names(given, experiment)] or [*_unfit_criterion(given, experiment)]
+        if not found:
+            try:
+                for _ in points(given, experiment):
+                    continue
+            except FieldError as error:
+                found = [error.problem]
+            except RequestError as error:
+                found = [Problem((), str(error))]
+        for problem in found:
+            yield Problem((*path, *problem.path), problem.message, problem.on_key)
+
+
+def _repeated_names(given: ScenarioSet) -> Iterator[Problem]:
+    lists: dict[str, Sequence[Scenario | InitiatorEntry | Experiment]] = {
+        "scenarios": given.scenarios,
+        "initiators": given.initiators,
+        "experiments": given.experiments,
+    }
+    for part, items in lists.items():
+        first: dict[str, int] = {}
+        for index, item in enumerate(items):
+            if item.name in first:
+                message = (
+                    f"'{item.name}' is the name of {part}[{first[item.name]}] already; each needs its own"
+                )
+                yield Problem((part, index, "name"), message)
+            first.setdefault(item.name, index)
+
+
+def _unknown_names(given: ScenarioSet, experiment: Experiment) -> Iterator[Problem]:
+    chosen = {
+        "scenarios": (experiment.scenarios, [scenario.name for scenario in given.scenarios]),
+        "initiators": (experiment.initiators, [entry.name for entry in given.initiators]),
+    }
+    for part, (names, known) in chosen.items():
+        for index, name in enumerate(names or ()):
+            if name not in known:
+                yield Problem((part, index), unknown(name, known, part[:-1]))
+            elif name in (names or ())[:index]:
+                yield Problem((part, index), f"'{name}' is listed already")
+    if not given.initiators:
+        yield Problem(("initiators",), "the set lists no initiators, so nothing can run; give at least one")
+
+
+def _unfit_criterion(given: ScenarioSet, experiment: Experiment) -> Iterator[Problem]:
+    if experiment.criterion.rho is None:
+        return
+    for scenario in given.chosen_scenarios(experiment):
+        for index, target in enumerate(scenario.targets):
+            if target.stands_still:
+                message = (
+                    f"target {index} of {scenario.name} stands still and has no line; match by shared plots: "
+                    "{plots: 3}"
+                )
+                yield Problem(("criterion",), message)

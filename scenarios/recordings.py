@@ -1,0 +1,349 @@
+"""Recorded plots: read from CSV, and written as CSV.
+
+A file begins with a header. It has the columns `x`, `y` and at least one of `scan` and `time`,
+and may have `z`, `amplitude` and `doppler`; names count whatever their case and the spaces
+around them. Further columns are carried along as text. Blank lines are not rows; the
+columns named here must hold a number in every row.
+"""
+
+from __future__ import annotations
+
+import csv
+import difflib
+import io
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.errors import RequestError
+from algorithms.plots import Plots
+from scenarios.files import read_text
+from scenarios.model import Scenario
+from scenarios.simulate import Draw
+
+NUMERIC = ("scan", "time", "x", "y", "z", "amplitude", "doppler")
+LARGEST_SCAN = 2**31 - 1
+LONGEST_INTERVAL = 1e9  # s: any scan number times it is far from overflow
+
+# Rows are converted by the block, since their text takes many times the room of their numbers. Blocks
+# this small die before the garbage collector looks at them, which takes longer than all else.
+BLOCK = 256
+
+Numbers = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """Recorded plots, and where in their file each comes from.
+
+    Attributes
+    ----------
+    plots : sorted by scan; within a scan in the order of the file
+    rows : int64 (n,), for each plot the zero-based data row of the file, the header not counted
+    extra : the further columns as text, for every data row of the file, in its order
+    interval : seconds between scans, as given or as worked out
+    assumed : what the file and the request leave open and how it was settled, in words, by
+        `interval`, `scan`, `time`, or `order` where time runs backwards against the scans
+    """
+
+    plots: Plots
+    rows: NDArray[np.int64]
+    extra: dict[str, tuple[str, ...]]
+    interval: float
+    assumed: dict[str, str]
+
+
+def read_plots(
+    path: Path, *, interval: float | None = None, scans: tuple[int, int] | None = None
+) -> Recording:
+    """Return the plots of a CSV file, as `parse_plots` does, with its errors and those of `read_text`."""
+    return parse_plots(read_text(path), str(path), interval=interval, scans=scans)
+
+
+def parse_plots(
+    text: str, source: str, *, interval: float | None = None, scans: tuple[int, int] | None = None
+) -> Recording:
+    """Return the plots of a CSV text.
+
+    Without times, a plot's time is its scan × the interval. Without scans, a scan is an interval
+    counted from the earliest time or, where no interval is given, each distinct time. With both,
+    the scans rule: a time that runs backwards against them is taken as it is, and `assumed` says
+    so, since the analyst may know why (clocks are set) where we do not.
+
+    Parameters
+    ----------
+    text : the file's content
+    source : what errors call the file
+    interval : seconds between scans; worked out from the times where none is given
+    scans : (a, b) keeps the scans a ≤ scan < b and numbers them such that a is scan 0;
+        times, rows, extra columns and the interval stay those of the whole file
+
+    Raises
+    ------
+    RequestError
+        One line with the file's line and column, what is given and what is allowed.
+    """
+    if interval is not None and not 0.0 < interval <= LONGEST_INTERVAL:
+        allowed = f"above 0 and at most {LONGEST_INTERVAL:g} s"
+        raise RequestError(f"interval: {interval:g} is given; it must be {allowed}")
+    columns, extra = _columns(text.removeprefix("\ufeff"), source)
+    assumed: dict[str, str] = {}
+    scan = _scans(columns, source, interval, assumed)
+    rows = np.argsort(scan, kind="stable").astype(np.int64)
+    scan = scan[rows]
+    if "time" in columns:
+        time = columns["time"][rows]
+        interval = _interval(scan, time, interval, assumed)
+    else:
+        if interval is None:
+            interval = 1.0
+            assumed["interval"] = "1 s, as the file has no times"
+        time = scan * np.float64(interval)
+        assumed["time"] = f"scan × {interval:g} s"
+    if scans is not None:
+        kept = _selected(scan, scans, source)
+        scan, time, rows = scan[kept] - scans[0], time[kept], rows[kept]
+    place = np.column_stack([columns[axis][rows] for axis in "xyz" if axis in columns])
+    measured = {name: columns[name][rows] for name in ("amplitude", "doppler") if name in columns}
+    return Recording(Plots(scan.astype(np.int32), time, place, **measured), rows, extra, interval, assumed)
+
+
+def _scans(
+    columns: dict[str, Numbers], source: str, interval: float | None, assumed: dict[str, str]
+) -> NDArray[np.int64]:
+    """Return the scan of each row: as given, or worked out from the times."""
+    if "scan" in columns:
+        return columns["scan"].astype(np.int64)
+    time = columns["time"]
+    if interval is None:
+        distinct, scan = np.unique(time, return_inverse=True)
+        assumed["scan"] = f"each distinct time is a scan, {len(distinct):,} in all"
+        return scan.astype(np.int64)
+    with np.errstate(over="ignore"):
+        # A time on the border of two scans belongs to the later, though it be rounded down: times
+        # since 1970 are rounded by more than the usual slack.
+        slack = max(1e-9, 2.0 * float(np.spacing(np.abs(time).max())) / interval)
+        number: Numbers = np.floor((time - time.min()) / interval + slack)
+    if number.max() > LARGEST_SCAN:
+        raise RequestError(
+            f"{source}: at an interval of {interval:g} s the times, {time.min():g} to {time.max():g} s, span "
+            f"more than {LARGEST_SCAN} scans; give a longer interval"
+        )
+    assumed["scan"] = f"each {interval:g} s from the earliest time is a scan"
+    return number.astype(np.int64)
+
+
+def _interval(
+    scan: NDArray[np.int64], time: Numbers, interval: float | None, assumed: dict[str, str]
+) -> float:
+    """Return the interval, from the mean times of the (sorted) scans where it is not given."""
+    numbers, first, counts = np.unique(scan, return_index=True, return_counts=True)
+    with np.errstate(over="ignore", invalid="ignore"):
+        # Counted from the scan's first time, so that the mean of equal times is exactly that time.
+        since_first = time - np.repeat(time[first], counts)
+        steps = np.diff(time[first] + np.add.reduceat(since_first, first) / counts)
+        rates = steps / np.diff(numbers)
+    back = np.flatnonzero(steps < 0.0)
+    if len(back):
+        begin, end = numbers[back[0]], numbers[back[0] + 1]
+        more = f", the first of {len(back):,} such steps" if len(back) > 1 else ""
+        assumed["order"] = f"by scan, though time runs backwards from scan {begin} to scan {end}{more}"
+    if interval is None:
+        rates = rates[(rates > 0.0) & (rates <= LONGEST_INTERVAL)]
+        interval = float(np.median(rates)) if len(rates) else 1.0
+        why = "the median step of time" if len(rates) else "as the times do not tell it"
+        assumed["interval"] = f"{interval:g} s, {why}"
+    return interval
+
+
+def _selected(scan: NDArray[np.int64], scans: tuple[int, int], source: str) -> slice:
+    """Return where in the sorted scans a selection lies."""
+    begin, end = np.searchsorted(scan, scans)
+    if not 0 <= scans[0] < scans[1] or begin == end:
+        raise RequestError(
+            f"{source}: the scans from {scans[0]} up to, not including, {scans[1]} are asked for, which hold "
+            f"no plots; the file has plots in {len(np.unique(scan)):,} of the scans {scan[0]} to {scan[-1]}"
+        )
+    return slice(int(begin), int(end))
+
+
+def _columns(text: str, source: str) -> tuple[dict[str, Numbers], dict[str, tuple[str, ...]]]:
+    """Return the columns of numbers by their lower-case names, and the further ones as text."""
+    _check_delimiter(text, source)
+    records = _records(text, source)
+    names = _names(*next(records, (1, [""])), source)
+    keys = [name.casefold() for name in names]
+    numbers: dict[str, list[Numbers]] = {key: [] for key in keys if key in NUMERIC}
+    extra: dict[str, list[str]] = {name: [] for name in names if name.casefold() not in NUMERIC}
+    width, rows = len(names), 0
+    while block := list(islice(records, BLOCK)):
+        for line, cells in block:
+            if len(cells) != width:
+                hint = "; quote a text with a comma, write numbers with a point" if len(cells) > width else ""
+                given = f"the header has {width} columns, this row {len(cells)}"
+                raise RequestError(f"{source}:{line}: {given}{hint}")
+        for at, column in enumerate(zip(*(cells for _, cells in block), strict=True)):
+            if keys[at] not in numbers:
+                extra[names[at]].extend(column)
+                continue
+            values = _numbers(column, keys[at])
+            if values is None:
+                wrong = next(row for row, cell in enumerate(column) if _numbers([cell], keys[at]) is None)
+                _refuse(source, *block[wrong], at, names[at])
+            numbers[keys[at]].append(values)
+        rows += len(block)
+    if not rows:
+        raise RequestError(f"{source}: the file has a header and no rows of plots below it")
+    texts = {name: tuple(cells) for name, cells in extra.items()}
+    return {key: np.concatenate(parts) for key, parts in numbers.items()}, texts
+
+
+def _check_delimiter(text: str, source: str) -> None:
+    """Refuse an empty file and another delimiter, beside which quotes would be reported instead."""
+    if not text.strip():
+        raise RequestError(f"{source}: the file is empty; it must have a header with x, y and scan or time")
+    line, header = next((line, part) for line, part in enumerate(_lines(text), 1) if part.strip())
+    other = "';'" if ";" in header else "a tab" if "\t" in header else None
+    if other and not {part.strip(' "\t\r\n').casefold() for part in header.split(",")} & set(NUMERIC):
+        raise RequestError(f"{source}:{line}: the delimiter is {other}; it must be a comma")
+
+
+def _names(line: int, header: Sequence[str], source: str) -> list[str]:
+    """Return the names of the columns, spaces stripped."""
+    names = [cell.strip() for cell in header]
+    keys = [name.casefold() for name in names]
+    for at, key in enumerate(keys):
+        if (first := keys.index(key)) < at:
+            both = f"columns {first + 1} and {at + 1} are both called {names[at]!r}"
+            raise RequestError(f"{source}:{line}: {both}; names must differ, in more than case")
+    lacks = {f"no column {name!r}": [name] for name in "xy" if name not in keys}
+    if "scan" not in keys and "time" not in keys:
+        lacks["neither 'scan' nor 'time'"] = ["scan", "time"]
+    if lacks:
+        near = [found for wanted in lacks.values() for name in wanted if (found := _nearest(name, names))]
+        hint = "; rename " + " and ".join(map(repr, dict.fromkeys(near))) + ", if that is it" if near else ""
+        has = ", ".join(map(repr, names[:20])) + (", …" if len(names) > 20 else "")
+        raise RequestError(f"{source}:{line}: there is {' and '.join(lacks)}; the header has {has}{hint}")
+    return names
+
+
+def _nearest(wanted: str, names: Sequence[str]) -> str | None:
+    """Return the name most like a wanted one: one that has it as a word (`x_km`), or is spelt alike."""
+    keys = {name.casefold(): name for name in names}
+    alike = [key for key in keys if wanted in re.findall(r"[a-z]+", key)]
+    return next((keys[key] for key in alike or difflib.get_close_matches(wanted, keys, 1)), None)
+
+
+def _lines(text: str) -> io.TextIOWrapper:
+    """Return the lines of a text, their ends kept."""
+    # A quarter of the room of StringIO; splitlines would split inside fields, as at U+2028.
+    data = io.BytesIO(text.encode("utf-8", "surrogatepass"))
+    return io.TextIOWrapper(data, "utf-8", "surrogatepass", newline="")
+
+
+def _records(text: str, source: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the header and each row that is not blank, with the line on which it begins."""
+    reader = csv.reader(_lines(text), strict=True)
+    line = 1
+    try:
+        for cells in reader:
+            if len(cells) > 1 or (cells and cells[0].strip()):
+                yield line, cells
+            line = reader.line_num + 1
+    except csv.Error as error:
+        raise RequestError(
+            f"{source}:{line}: the row that begins here cannot be read ({error}); a field that opens with a "
+            "quote must end with one, and a quote inside it must be doubled"
+        ) from None
+
+
+def _numbers(cells: Sequence[str], key: str) -> Numbers | None:
+    """Return cells as numbers, or None where one is not a number that the column allows."""
+    try:
+        values = np.fromiter(map(float, cells), np.float64, len(cells))
+    except ValueError:
+        return None
+    good = np.isfinite(values)
+    if key == "scan":
+        good &= (values >= 0.0) & (values <= LARGEST_SCAN) & (values == np.floor(values))
+    # To Python 1_2 is 12; in a file it is more likely a number of two parts.
+    return values if good.all() and "_" not in "".join(cells) else None
+
+
+def _refuse(source: str, line: int, cells: Sequence[str], column: int, name: str) -> NoReturn:
+    """Say what is wrong with one field of the row that begins on a line."""
+    line += sum(len(re.findall(r"\r\n?|\n", cell)) for cell in cells[:column])
+    cell = cells[column].strip()
+    given = f"{cell if len(cell) <= 40 else cell[:39] + '…'!r} is given" if cell else "nothing is given"
+    allowed = "a number" + (" with a decimal point" if "," in cell else "")
+    if name.casefold() == "scan":
+        allowed = f"a whole number from 0 to {LARGEST_SCAN}"
+    else:
+        with suppress(ValueError):
+            allowed = allowed if np.isfinite(float(cell)) else "a finite number"
+    raise RequestError(f"{source}:{line}: column {name!r}: {given}; it must be {allowed}")
+
+
+def write_plots(draw: Draw, scenario: Scenario) -> str:
+    """Return the plots of one simulated trial, with their truth, as CSV that reads back bit for bit.
+
+    Parameters
+    ----------
+    draw : one trial of the scenario
+    scenario : whose targets the plots are of; a plot of clutter has no `target`, `true_x`, `true_y`
+    """
+    if draw.chunk.trials != 1:
+        raise ValueError(f"a draw of {draw.chunk.trials} trials; a file of plots holds one")
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(["scan", "time", "x", "y", "target", "true_x", "true_y"])
+    plots = draw.chunk.trial(0)
+    columns = (plots.scan, plots.time, plots.position[:, 0], plots.position[:, 1], draw.origin)
+    for scan, time, x, y, origin in zip(*(column.tolist() for column in columns), strict=True):
+        truth: list[int | float | str] = ["", "", ""]
+        if origin >= 0:
+            target = scenario.targets[origin]
+            elapsed = (scan - target.birth) * scenario.interval
+            moved = zip(target.position, target.velocity, strict=True)
+            truth = [origin, *(place + speed * elapsed for place, speed in moved)]
+        writer.writerow([scan, time, x, y, *truth])
+    return file.getvalue()
+
+
+def write_assigned(text: str, recording: Recording, tracks: Sequence[NDArray[np.int64]]) -> str:
+    """Return a CSV text with a column `track` added: the tracks to which each row's plot belongs.
+
+    All rows and columns of the text are kept, in their order. The numbers of several tracks are
+    joined with `;`; rows that no track has, or that were not selected, have none. A column `track` that
+    the text already has becomes `input_track`.
+
+    Parameters
+    ----------
+    text : the text that was read
+    recording : what `parse_plots` made of it
+    tracks : the plots of each track, as rows of `recording.plots` (as `Tracks.plots`)
+    """
+    assigned: dict[int, list[str]] = {}
+    for number, plots in enumerate(tracks):
+        for row in recording.rows[plots].tolist():
+            assigned.setdefault(row, []).append(str(number))
+    records = _records(text.removeprefix("\ufeff"), "the recording")
+    names = next(records)[1]
+    taken = [name.strip().casefold() for name in names]
+    if "track" in taken:
+        free = (f"input_track{suffix}" for suffix in ("", *range(len(names))))
+        names[taken.index("track")] = next(name for name in free if name not in taken)
+    # Before Python 3.13 a field with a bare CR is not quoted by itself.
+    bare = re.search(r"\r(?!\n)", text)
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n", quoting=csv.QUOTE_ALL if bare else csv.QUOTE_MINIMAL)
+    writer.writerow([*names, "track"])
+    writer.writerows([*cells, ";".join(assigned.get(row, ()))] for row, (_, cells) in enumerate(records))
+    return file.getvalue()
