@@ -552,6 +552,39 @@ def options(
     """Design and judge track initiation, above all by the Hough transform."""
 
 
+@app.command("open", hidden=True)
+@reported
+def open_application(
+    name: Annotated[
+        str | None, typer.Argument(metavar="SET", help="A YAML file, or the name of a bundled set.")
+    ] = None,
+) -> None:
+    """Open the application, on a set where one is given."""
+    from hough_tui.ui.terminal import require_terminal
+    from scenarios.bundled import bundled_paths
+
+    if name is not None and name not in bundled_paths() and not Path(name).exists():
+        from algorithms.parameters import unknown
+
+        known = [*bundled_paths(), *commands()]
+        refuse(True, unknown(name, known, "file, bundled set or command"))
+    require_terminal()
+    from hough_tui.ui.app import run
+
+    raise typer.Exit(run(name))
+
+
+def commands() -> list[str]:
+    """Return the names of the commands."""
+    named = [
+        command.name or command.callback.__name__ for command in app.registered_commands if command.callback
+    ]
+    return [*named, *(group.name or "" for group in app.registered_groups)]
+
+
 def main() -> None:
-    """Run the command line."""
-    app()
+    """Run the command line: without a command, the application is opened, on a set where one is named."""
+    arguments = sys.argv[1:]
+    if not arguments or not (arguments[0].startswith("-") or arguments[0] in commands()):
+        arguments = ["open", *arguments]
+    app(arguments)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from importlib.resources import files as resources
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ from pydantic import ValidationError
 from algorithms.errors import RequestError
 from algorithms.parameters import Problem, join, problems, unknown
 from scenarios.atomic import replace_file
+from scenarios.bundled import bundled_paths
 from scenarios.checks import inconsistencies
 from scenarios.marked_yaml import MarkedDocument, read, rewrite, write
 from scenarios.model import ScenarioSet
@@ -27,12 +27,6 @@ class BundledSet:
     name: str
     path: Path
     description: str
-
-
-def bundled_paths() -> dict[str, Path]:
-    """Return where the bundled sets are, by name."""
-    folder = Path(str(resources("scenarios") / "sets"))
-    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
 
 
 def bundled_sets() -> list[BundledSet]:

@@ -18,6 +18,7 @@ from algorithms.parameters import (
     Flag,
     Fraction,
     Integer,
+    Name,
     NotNegative,
     Number,
     Parameters,
@@ -33,8 +34,6 @@ MOST_PLOTS = 20_000_000
 MOST_TRIALS = 10_000_000
 LARGEST_SEED = 2**64 - 1
 Seed = Annotated[int, Field(strict=True, ge=0, le=LARGEST_SEED)]
-
-Name = Annotated[str, Field(min_length=1, pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
 
 
 def _rising(bounds: tuple[float, float]) -> tuple[float, float]:

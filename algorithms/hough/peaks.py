@@ -102,7 +102,7 @@ def clear_window(accumulator, row, column, rows, columns, wrap, rho_min, rho_ste
     for other in range(row - rows, row + rows + 1):
         target, centre = other, column
         if other < 0 or other >= height:
-            if not wrap or rows >= height:
+            if not wrap:
                 continue
             target = other % height
             if ((other - target) // height) % 2 != 0:

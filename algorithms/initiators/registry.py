@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+import re
 from functools import cache
 from importlib.metadata import entry_points
 
 from algorithms import initiators as package
 from algorithms.errors import RequestError
 from algorithms.initiators.base import Initiator
-from algorithms.parameters import unknown
+from algorithms.parameters import NAME, unknown
 
 ENTRY_POINTS = "hough_tui.initiators"
 
@@ -70,6 +71,8 @@ def _add(found: dict[str, Initiator], declared: object, origin: str) -> None:
     for attribute, kind in (("name", str), ("summary", str), ("parameters", type)):
         if not isinstance(getattr(declared, attribute, None), kind):
             raise RequestError(f"{origin} does not say its `{attribute}`; mend or remove it")
+    if not re.fullmatch(NAME, declared.name):
+        raise RequestError(f"{origin} is named '{declared.name}'; the form of a name is {NAME}; rename it")
     if declared.name in found:
         raise RequestError(f"{origin} is named '{declared.name}', as another initiator is; rename it")
     taken = sorted(RESERVED & set(declared.parameters.model_fields))

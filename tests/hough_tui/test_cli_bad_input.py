@@ -301,6 +301,8 @@ def test_the_sets_command_names_the_nearest_set_too(refusal):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
+        (["bacth"], ["'bacth'", "did you mean 'batch'?"]),
+        (["course-reprot"], ["'course-reprot'", "did you mean 'course-report'?"]),
         (["batch", "course-report", "--experiment", "tabels"], ["'tabels'", "did you mean 'tables'?"]),
         (["batch", "course-report", "--json", "--plot"], ["--json", "--plot"]),
         (["batch", "course-report", "--json", "--csv", "-"], ["--json", "--csv -"]),
@@ -336,7 +338,6 @@ def test_names_and_options_that_do_not_go(refusal, arguments, words):
         (["initiate", "plots.csv", "--sigma", "x"], "--sigma"),
         (["reproduce", "course-2-1", "--trials", "1"], "--trials"),
         (["batch"], "SET"),
-        (["bacth", "course-report"], "bacth"),
     ],
     ids=" ".join,
 )

@@ -10,7 +10,8 @@ from pydantic import BaseModel
 
 from algorithms.initiators.registry import initiators
 from hough_tui.cli import main
-from scenarios.files import bundled_paths, load_set
+from scenarios.bundled import bundled_paths
+from scenarios.files import load_set
 from scenarios.marked_yaml import read
 
 PROJECT = Path(__file__).parents[2]

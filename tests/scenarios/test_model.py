@@ -199,7 +199,6 @@ def test_the_numeric_fields_of_a_scenario_can_be_swept():
         (Experiment, {"name": "e", "criterion": {"rho": 1}, "trials": 0}),
         (Experiment, {"name": "e", "criterion": {"rho": 1}, "seed": LARGEST_SEED + 1}),
         (Experiment, {"name": "e", "criterion": {"rho": 1}, "seed": -1}),
-        (Experiment, {"name": "e", "criterion": {"rho": 1}, "control": "no"}),
         (Experiment, {"name": "e", "criterion": {"rho": 1}, "scenarios": []}),
         (Experiment, {"name": "e", "criterion": {"rho": 1}, "sweep": {"scans": []}}),
         (Experiment, {"name": "e", "criterion": {"rho": 1}, "sweep": {"scans": 5}}),
@@ -212,7 +211,7 @@ def test_the_numeric_fields_of_a_scenario_can_be_swept():
         (ScenarioSet, {"name": "../a", "scenarios": [SCENARIO]}),
         (ScenarioSet, {"name": "s", "scenarios": [SCENARIO], "schema": 2}),
         (ScenarioSet, {"name": "s", "scenarios": [SCENARIO], "initiators": [{"name": "nothing"}]}),
-        (ScenarioSet, {"name": "s", "scenarios": [SCENARIO], "initiators": [{"name": "standard", "maxima": 2}]}),
+        (ScenarioSet, {"name": "s", "scenarios": [SCENARIO], "initiators": [{"name": "standard", "x": 2}]}),
     ],
 )  # fmt: skip
 def test_what_is_not_allowed(model, given):
