@@ -393,7 +393,7 @@ def _flow(value: Any, *, outer: bool = False, quote: str = "") -> str:
 def _literal(value: Any) -> list[str] | None:
     """Return the lines of a text that can be a literal block with every line looking as it is."""
     lines = value.removesuffix("\n").split("\n") if isinstance(value, str) and "\n" in value else [""]
-    clean = all(line.isprintable() and not line.isspace() for line in lines)
+    clean = all(map(str.isprintable, lines))
     return lines if clean and lines[0] and lines[-1] and lines[0][0] != " " else None
 
 

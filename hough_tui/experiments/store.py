@@ -62,6 +62,10 @@ class RunStore(ABC):
     def load(self, name: str) -> Run:
         """Return a run."""
 
+    @abstractmethod
+    def remove(self, name: str) -> None:
+        """Remove a run; here a part of its name is not enough."""
+
 
 class FolderStore(RunStore):
     """Runs as folders below the data directory, each moved into place when it is whole.
@@ -154,6 +158,24 @@ class FolderStore(RunStore):
                 raise
             raise RequestError(f"{folder}: the run is damaged ({error}); remove its folder") from None
         return Run(sets, document, columns)
+
+    def remove(self, name: str) -> None:
+        """Remove a run; here a part of its name is not enough.
+
+        Raises
+        ------
+        RequestError
+            Where there is no run of that name.
+        OSError
+            Where the folder cannot be written.
+        """
+        known = self.names()
+        if name not in known:
+            raise RequestError(unknown(name, known[:10], "run"))
+        # Renamed first: a run that is removed in part only must not be listed.
+        doomed = self.folder / f".removed-{secrets.token_hex(4)}"
+        os.replace(self.folder / name, doomed)
+        shutil.rmtree(doomed)
 
     def _path(self, name: str) -> Path:
         known = self.names()

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from algorithms.tracks import Tracks
 from hough_tui.reports.layout import Column, Sheet
 from hough_tui.reports.rates import rate_sheets
 
@@ -158,3 +159,20 @@ def _written(value: Any, depth: int) -> str:
         return "[" + begin + f",{begin}".join(lines) + end + "]"
     keys = [json.dumps(key, ensure_ascii=False) for key in value]
     return "{" + begin + f",{begin}".join(map(": ".join, zip(keys, lines, strict=True))) + end + "}"
+
+
+def track_csv(tracks: Tracks) -> str:
+    """Return tracks as CSV: line, score, number of plots, position, velocity."""
+    return csv_text(
+        [
+            {
+                "theta_deg": math.degrees(tracks.theta[index]),
+                "rho": float(tracks.rho[index]),
+                "score": float(tracks.score[index]),
+                "plots": len(tracks.plots[index]),
+                "position": [float(value) for value in tracks.position[index]],
+                "velocity": [float(value) for value in tracks.velocity[index]],
+            }
+            for index in range(len(tracks))
+        ]
+    )

@@ -644,6 +644,12 @@ def test_equal_items_are_told_apart_by_their_neighbours() -> None:
         ("? a\n? b # c\n: 1\n", {"a": 2, "b": 3}, "a: 2\n? b # c\n: 3\n"),
         ("{a, b: , 'c':1, \"d\": 2}\n", {"a": 1, "b": 2, "c": 3, "d": 4}, "{a: 1, b: 2 , 'c':3, \"d\": 4}\n"),
         ("x: [b: 1, c] # d\n", {"x": [{"b": 2}, "c"]}, "x: [{b: 2}, c] # d\n"),
+        ("? a\n# on b\n? b\n", {"b": None}, "# on b\n? b\n"),
+        ("'a' : 1\n", {"a": [[1]]}, "'a':\n  - [1]\n"),
+        # comments above the first item
+        ("# top\na: 1\n# on b\nb: 2\n", {"b": 2}, "# top\n# on b\nb: 2\n"),
+        ("l:\n  # on l\n  - 1\n  - 2\n", {"l": [2]}, "l:\n  # on l\n  - 2\n"),
+        ("l:  # l\n  # on 1\n  - 1\n  # on 2\n  - 2\n", {"l": [2]}, "l:  # l\n  # on 2\n  - 2\n"),
         # brackets, commas and their comments
         ("[ 1, 2 ] # c\n", [1, 2, 3], "[ 1, 2, 3 ] # c\n"),
         ("[1, # one\n 2]\n", [1], "[1 # one\n]\n"),

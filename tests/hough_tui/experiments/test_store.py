@@ -63,6 +63,18 @@ def test_a_damaged_run_is_named(run, tmp_path):
         store.document(name)
 
 
+def test_a_run_is_removed_by_its_whole_name_only(run, tmp_path):
+    store = FolderStore(tmp_path)
+    first, second = store.add(run), store.add(run)
+    with pytest.raises(RequestError, match="there is no run"):
+        store.remove(first[:-1])
+    store.remove(first)
+    assert store.names() == [second]
+    assert [path.name for path in tmp_path.iterdir()] == [second]
+    with pytest.raises(RequestError, match="there is no run"):
+        store.remove(first)
+
+
 def test_without_a_folder_there_are_no_runs(tmp_path):
     assert FolderStore(tmp_path / "never").names() == []
 

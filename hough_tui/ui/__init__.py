@@ -1,0 +1,1 @@
+"""The terminal application; nothing outside this package imports textual."""

@@ -1,0 +1,379 @@
+"""The application: it owns the workspace, hands changes round, and ends cleanly."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from textual import on, work
+from textual.app import App, SystemCommand
+from textual.binding import Binding, BindingType
+from textual.screen import Screen
+from textual.worker import Worker, WorkerState
+
+from hough_tui.ui.config import Config
+from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited, FieldUnreadable, TrialOpened
+from hough_tui.ui.screens.main import MainScreen
+from hough_tui.ui.screens.question import Question, telling
+
+if TYPE_CHECKING:
+    from hough_tui.ui.autosave import Unsaved
+    from hough_tui.ui.workspace import Workspace
+    from scenarios.model import ScenarioSet
+
+AUTOSAVE_DELAY = 0.8
+"""Seconds after a change until the set is kept aside."""
+
+
+class HoughApp(App[None]):
+    """Design and judge track initiation."""
+
+    CSS_PATH = "hough_tui.tcss"
+    TITLE = "hough-tui"
+    ENABLE_COMMAND_PALETTE = True
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("f1", "explain", "Help", id="app.help", priority=True),
+        Binding("ctrl+o", "open", "Open", id="app.open", priority=True, show=False),
+        Binding("ctrl+s", "save", "Save", id="app.save", priority=True),
+        Binding("f12", "save_as", "Save as", id="app.save-as", priority=True, show=False),
+        Binding("ctrl+z", "undo", "Undo", id="app.undo", priority=True),
+        Binding("ctrl+y", "redo", "Redo", id="app.redo", priority=True, show=False),
+        Binding("f5", "run", "Run", id="app.run", priority=True),
+        Binding("ctrl+q", "leave", "Quit", id="app.quit", priority=True),
+    ]
+
+    def __init__(self, set_name: str | None, config: Config) -> None:
+        super().__init__()
+        self._set_name, self._config = set_name, config
+        self.workspace: Workspace | None = None
+        self._main = MainScreen()
+
+    def get_default_screen(self) -> Screen[Any]:
+        """Return the main screen: its frame is painted before anything heavy is loaded."""
+        return self._main
+
+    def on_mount(self) -> None:
+        """Apply the settings, and begin to load what is heavy once the frame is painted."""
+        from hough_tui.ui.terminal import on_ending_signals
+
+        on_ending_signals(self._end_by_signal)
+        if self._config.theme in self.available_themes:
+            self.theme = self._config.theme
+        elif self._config.theme is not None:
+            self.notify(f"There is no theme '{self._config.theme}'", severity="warning", markup=False)
+        self.set_keymap(self._config.keys)
+        self.call_after_refresh(self._begin)
+
+    def _begin(self) -> None:
+        self._main.tell_state("loading")
+        self._load(self._set_name)
+
+    # Opening
+
+    @work(thread=True, exclusive=True, exit_on_error=False, group="load", name="load")
+    def _load(self, name: str | None) -> None:
+        """Import what is heavy, read a set, and look for unsaved work."""
+        from algorithms.errors import RequestError
+        from hough_tui.ui.autosave import aside_file, read_aside, unsaved_work
+        from scenarios.bundled import bundled_paths
+        from scenarios.files import bundled_sets, load_set, locate
+
+        if name is None:
+            self.call_from_thread(self._welcome, bundled_sets(), unsaved_work())
+            return
+        try:
+            given, path = load_set(name), locate(name)
+        except RequestError as error:
+            self.call_from_thread(self._cannot_open, str(error))
+            return
+        own = None if path in bundled_paths().values() else path
+        kept = read_aside(aside_file(given.name, own))
+        self.call_from_thread(self._opened, given, own, kept if kept and kept.given != given else None)
+
+    def _welcome(self, bundled: list[Any], kept: list[Unsaved]) -> None:
+        from hough_tui.ui.screens.welcome import Welcome
+
+        self._main.tell_state(None)
+        self.push_screen(Welcome(bundled, kept), self._chosen_at_start)
+
+    def _chosen_at_start(self, chosen: str | Unsaved | None) -> None:
+        if isinstance(chosen, str):
+            self._main.tell_state("loading")
+            self._load(chosen)
+        elif chosen is not None:
+            self._opened(chosen.given, chosen.path, None, is_recovered=True)
+        elif self.workspace is None:
+            self.exit()
+
+    def _cannot_open(self, message: str) -> None:
+        def go_on(_: str | None) -> None:
+            if self.workspace is None:
+                self._load(None)
+
+        self._main.tell_state(None)
+        self.push_screen(telling("This set cannot be opened", message), go_on)
+
+    def _opened(
+        self, given: ScenarioSet, path: Path | None, kept: Unsaved | None, *, is_recovered: bool = False
+    ) -> None:
+        from hough_tui.ui.workspace import Workspace
+
+        self.workspace = Workspace(given, path)
+        if is_recovered:
+            self.workspace.forget_saved()
+        self._main.tell_state(None)
+        self._main.show_workspace(self.workspace)
+        self._warm()
+        if kept is not None:
+
+            def answer(key: str | None) -> None:
+                if key == "recover" and self.workspace is not None:
+                    self.workspace = self.workspace.recovered(kept.given)
+                    self._main.show_workspace(self.workspace)
+                elif key == "forget":
+                    kept.file.unlink(missing_ok=True)
+
+            self.push_screen(
+                Question(
+                    "There are unsaved changes",
+                    f"Changes to {given.name} of {kept.when} were never saved.",
+                    {"recover": "Recover them", "forget": "Forget them"},
+                ),
+                answer,
+            )
+
+    @work(thread=True, exit_on_error=False, group="warm", name="warm")
+    def _warm(self) -> None:
+        """Load the kernels, or compile them, before they are first wanted."""
+        from algorithms.compiled import is_cold
+        from hough_tui.ui.warming import warm
+
+        if is_cold():
+            self.call_from_thread(self._main.tell_state, "compiling kernels, once, up to 20 s")
+        warm()
+        self.call_from_thread(self._main.tell_state, None)
+
+    # Editing
+
+    @on(FieldEdited)
+    def _edit_field(self, event: FieldEdited) -> None:
+        self._edit(lambda workspace: workspace.set(event.path, event.value))
+
+    @on(ElementAdded)
+    def _add_element(self, event: ElementAdded) -> None:
+        self._edit(lambda workspace: workspace.insert(event.path, event.value))
+
+    @on(ElementRemoved)
+    def _remove_element(self, event: ElementRemoved) -> None:
+        self._edit(lambda workspace: workspace.remove(event.path))
+
+    @on(FieldUnreadable)
+    def _note_unreadable(self) -> None:
+        self._main.show_soundness()
+
+    def _edit(self, change: Callable[[Workspace], None]) -> None:
+        from algorithms.parameters import FieldError
+
+        if self.workspace is None:
+            return
+        try:
+            change(self.workspace)
+        except FieldError as error:
+            self._main.refuse(error.problem)
+            return
+        self._changed()
+
+    def _changed(self) -> None:
+        assert self.workspace is not None
+        self._main.show_set(self.workspace)
+        self._autosave_timer = self.set_timer(AUTOSAVE_DELAY, self._keep_aside)
+
+    def _keep_aside(self) -> None:
+        workspace = self.workspace
+        if workspace is None:
+            return
+        from hough_tui.ui.autosave import forget, keep_aside
+
+        try:
+            if workspace.is_changed:
+                keep_aside(workspace.given, workspace.path)
+            else:
+                forget(workspace.given.name, workspace.path)
+        except OSError as error:
+            self.notify(
+                f"Unsaved work cannot be kept aside: {error.strerror}", severity="warning", markup=False
+            )
+
+    def action_undo(self) -> None:
+        """Take back the last edit."""
+        self._step("undo")
+
+    def action_redo(self) -> None:
+        """Do the last undone edit again."""
+        self._step("redo")
+
+    def _step(self, which: str) -> None:
+        if self.workspace is None:
+            return
+        what = getattr(self.workspace, which)()
+        if what is None:
+            self.notify(f"Nothing to {which}", timeout=2, markup=False)
+            return
+        self._changed()
+        self.notify(f"{which.title()}: {what}", timeout=2, markup=False)
+
+    # Files
+
+    def action_open(self) -> None:
+        """Open another set."""
+        self._when_saved(lambda: self._load(None))
+
+    def action_save(self) -> None:
+        """Save the set to its file; a set without one is asked for it."""
+        if self.workspace is None:
+            return
+        if self.workspace.path is None:
+            self.action_save_as()
+        else:
+            self._save(None)
+
+    def action_save_as(self) -> None:
+        """Save the set to another file, which becomes its own."""
+        from hough_tui.ui.screens.path_prompt import PathPrompt
+
+        if self.workspace is None:
+            return
+        given = str(self.workspace.path or f"{self.workspace.given.name}.yaml")
+        self.push_screen(PathPrompt("Save the set as", given, is_new=True), self._save_chosen)
+
+    def _save_chosen(self, path: Path | None) -> None:
+        if path is not None:
+            self._save(path)
+
+    def _save(self, path: Path | None) -> bool:
+        from algorithms.errors import RequestError
+        from hough_tui.ui.autosave import forget
+
+        assert self.workspace is not None
+        wrong = self._main.why_not_runnable()
+        if wrong is not None:
+            self.push_screen(telling("The set is not saved", wrong))
+            return False
+        before = self.workspace.path
+        try:
+            saved = self.workspace.save(path)
+        except RequestError as error:
+            self.push_screen(telling("The set is not saved", str(error)))
+            return False
+        forget(self.workspace.given.name, before)
+        self._main.show_set(self.workspace)
+        self.notify(f"Saved {saved}", markup=False)
+        return True
+
+    # Running and looking
+
+    def action_run(self) -> None:
+        """Run the experiment."""
+        self._main.run_experiment()
+
+    @on(TrialOpened)
+    def _open_trial(self, event: TrialOpened) -> None:
+        self._main.open_trial(event)
+
+    # Help
+
+    def action_explain(self) -> None:
+        """Help for the focused view."""
+        from hough_tui.ui.screens.help import HelpScreen
+
+        if isinstance(self.screen, HelpScreen):
+            self.screen.dismiss(None)
+            return
+        self.push_screen(HelpScreen(self._main.help_text(), list(self.screen.active_bindings.values())))
+
+    def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
+        """Yield every action of the application and of the focused view for the command palette."""
+        yield from super().get_system_commands(screen)
+        seen = set()
+        for active in screen.active_bindings.values():
+            binding, node = active.binding, active.node
+            name = (node, binding.action)
+            if binding.description and not binding.system and name not in seen:
+                seen.add(name)
+                keys = self.get_key_display(binding)
+                yield SystemCommand(
+                    binding.description,
+                    f"{binding.id or binding.action} ({keys})",
+                    lambda node=node, action=binding.action: self.call_later(self.run_action, action, node),
+                )
+
+    # Leaving
+
+    def action_leave(self) -> None:
+        """Quit; unsaved changes are asked about."""
+        self._when_saved(self._leave)
+
+    async def action_quit(self) -> None:
+        """Quit, as the command palette calls it."""
+        self.action_leave()
+
+    def _leave(self) -> None:
+        self._main.stop_work()
+        self.exit()
+
+    def _when_saved(self, go_on: Any) -> None:
+        """Go on at once, or when the user has decided about unsaved changes."""
+        workspace = self.workspace
+        if workspace is None or not workspace.is_changed:
+            go_on()
+            return
+
+        def answer(key: str | None) -> None:
+            if key == "discard":
+                from hough_tui.ui.autosave import forget
+
+                forget(workspace.given.name, workspace.path)
+                go_on()
+            elif key == "save":
+                if workspace.path is None:
+                    self.action_save_as()
+                elif self._save(None):
+                    go_on()
+
+        self.push_screen(
+            Question(
+                "There are unsaved changes",
+                f"{workspace.given.name} was changed and is not saved.",
+                {"save": "Save", "discard": "Discard", "stay": "Stay"},
+            ),
+            answer,
+        )
+
+    def _end_by_signal(self, status: int) -> None:
+        """Keep unsaved work aside and end, when the process is asked to or has lost its terminal."""
+        self._keep_aside()
+        self._main.stop_work()
+        self.exit(return_code=status)
+
+    @on(Worker.StateChanged)
+    def _tell_failure(self, event: Worker.StateChanged) -> None:
+        if event.state is WorkerState.ERROR and event.worker.error is not None:
+            error = event.worker.error
+            self._main.tell_state(None)
+            self.push_screen(telling("That did not work", f"{error}" or type(error).__name__))
+
+
+def run(set_name: str | None) -> int:
+    """Open the application and return its exit status.
+
+    Raises
+    ------
+    RequestError
+        Where the settings are wrong.
+    """
+    from hough_tui.ui.config import read_config
+
+    app = HoughApp(set_name, read_config())
+    app.run()
+    return app.return_code or 0

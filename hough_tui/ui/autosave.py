@@ -1,0 +1,82 @@
+"""Unsaved work, kept aside so that a dropped connection loses nothing."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from algorithms.errors import RequestError
+from hough_tui.directories import state_directory
+from scenarios.atomic import replace_file
+from scenarios.files import parse_set, set_data
+from scenarios.marked_yaml import write
+from scenarios.model import ScenarioSet
+
+
+@dataclass(frozen=True, slots=True)
+class Unsaved:
+    """Work that was kept aside.
+
+    Attributes
+    ----------
+    given : the set as it was
+    path : the file that it belongs to; None for one that was never saved
+    when : the time of its last change
+    file : where it is kept
+    """
+
+    given: ScenarioSet
+    path: Path | None
+    when: str
+    file: Path
+
+
+def keep_aside(given: ScenarioSet, path: Path | None) -> Path:
+    """Write a set aside, in place of what was kept of it before.
+
+    Raises
+    ------
+    OSError
+        Where the folder cannot be written.
+    """
+    file = aside_file(given.name, path)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    content: dict[str, Any] = {
+        "path": None if path is None else str(path.resolve()),
+        "when": f"{datetime.now():%Y-%m-%d %H:%M:%S}",
+        "set": write(set_data(given)),
+    }
+    replace_file(file, json.dumps(content, ensure_ascii=False, indent=1))
+    return file
+
+
+def forget(name: str, path: Path | None) -> None:
+    """Remove what was kept aside of a set: it was saved, or is not wanted."""
+    aside_file(name, path).unlink(missing_ok=True)
+
+
+def aside_file(name: str, path: Path | None) -> Path:
+    """Return where a set is kept aside; each file has its own place."""
+    key = hashlib.sha256(str(path.resolve() if path else "").encode()).hexdigest()[:10]
+    return state_directory() / "unsaved" / f"{name}-{key}.json"
+
+
+def unsaved_work() -> list[Unsaved]:
+    """Return all work that was kept aside, the newest first; what cannot be read is left out."""
+    folder = state_directory() / "unsaved"
+    found = [kept for file in folder.glob("*.json") if (kept := read_aside(file)) is not None]
+    return sorted(found, key=lambda kept: kept.when, reverse=True)
+
+
+def read_aside(file: Path) -> Unsaved | None:
+    """Return work that was kept aside in a file; None where there is none, or it cannot be read."""
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+        given = parse_set(content["set"], str(file))
+        return Unsaved(given, Path(content["path"]) if content["path"] else None, content["when"], file)
+    except (OSError, ValueError, KeyError, TypeError, RequestError):
+        return None

@@ -1,0 +1,1 @@
+"""Drawing in characters: arrays in, segments of text out; no widgets."""

@@ -1,0 +1,1 @@
+"""Forms worked out from declared models: nothing about a field is said here a second time."""

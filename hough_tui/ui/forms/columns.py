@@ -1,0 +1,79 @@
+"""The columns of a table of models: their fields side by side, groups and vectors opened."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+from pydantic import BaseModel
+from rich.text import Text
+
+from algorithms.context import Unit
+from algorithms.parameters import Path
+from hough_tui.ui.forms.edits import value_in
+from hough_tui.ui.forms.fields import FieldDescription, Kind, components, described, ordered, told_apart
+from hough_tui.ui.forms.labels import within
+from hough_tui.ui.forms.texts import text_of
+
+INHERITED = "dim italic"
+"""The style of a value that is not given here but taken from around."""
+
+
+def columns_of(models: Sequence[type[BaseModel]], unit: Unit | None) -> tuple[FieldDescription, ...]:
+    """Return the columns of elements of some models; their paths begin within the element."""
+    found: dict[Path, FieldDescription] = {}
+    for model in models:
+        for column in _opened(ordered(told_apart(described(model, (), unit), tuple(models)))):
+            found.setdefault(column.path, column)
+    # What several kinds of elements have comes before what only some have.
+    return tuple(sorted(found.values(), key=lambda column: not _is_common(column, models)))
+
+
+def has(element: BaseModel, column: FieldDescription) -> bool:
+    """Return whether an element has the field of a column: not every kind has every field."""
+    return _is_common(column, [type(element)])
+
+
+def _is_common(column: FieldDescription, models: Sequence[type[BaseModel]]) -> bool:
+    return all(column.path[0] in model.model_fields for model in models)
+
+
+def heading(label: str, unit: str, *, right: bool) -> Text:
+    """Return the heading of a column, its unit below it."""
+    return Text(f"{label}\n[{unit}]" if unit else label, justify="right" if right else "left")
+
+
+def cell(column: FieldDescription, element: BaseModel, holder: BaseModel | None) -> Text:
+    """Return the cell of an element.
+
+    Parameters
+    ----------
+    holder : what the list is part of: a group that an element lacks is taken from there
+    """
+    value, style = value_in(element, column.path), ""
+    if value is None and len(column.path) > 1:
+        value, style = inherited(column, holder), INHERITED
+    return Text(text_of(column, value), style, justify="right" if is_right(column) else "left", no_wrap=True)
+
+
+def inherited(column: FieldDescription, holder: BaseModel | None) -> Any:
+    """Return what stands for an empty cell; None where nothing does."""
+    return value_in(holder, column.path) if holder is not None and column.optional else None
+
+
+def is_right(column: FieldDescription) -> bool:
+    """Return whether the cells of a column stand at its right."""
+    return column.kind in (Kind.NUMBER, Kind.WHOLE)
+
+
+def _opened(fields: Sequence[FieldDescription]) -> Iterator[FieldDescription]:
+    for field in fields:
+        if field.kind is Kind.GROUP:
+            for inner in _opened(field.fields):
+                yield replace(inner, label=f"{field.label} {within(inner.label)}")
+        elif field.kind in (Kind.LIST, Kind.MAPPING) or field.is_constant:
+            # Lists within lists have tables of their own, and one value need not be repeated.
+            continue
+        else:
+            yield from components(field) or (field,)

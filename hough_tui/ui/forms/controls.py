@@ -1,0 +1,106 @@
+"""The controls of a form: inputs that leave alone what is typed, and a flag that reads without colour."""
+
+from __future__ import annotations
+
+from rich.text import Text
+from textual.binding import Binding
+from textual.message import Message
+from textual.reactive import reactive
+from textual.widget import Widget
+from textual.widgets import Input
+
+from hough_tui.ui.forms.fields import FieldDescription
+from hough_tui.ui.forms.texts import NO, YES
+
+EXPLAIN = "field.explain"
+"""The id of the binding that explains a field, wherever it is."""
+
+
+class ExplanationWanted(Message):
+    """Someone asks what a field is."""
+
+
+class NumberInput(Input):
+    """A line of text for numbers.
+
+    It is no input of type "number": that one drops the characters that it does not know, so that
+    a typed 1,5 becomes 15.
+    """
+
+    BINDINGS = [
+        # Before the key is typed: no number has a question mark.
+        Binding(
+            "question_mark,ctrl+question_mark",
+            "explain",
+            "Explain",
+            key_display="?",
+            priority=True,
+            id=EXPLAIN,
+        )
+    ]
+
+    def action_explain(self) -> None:
+        """Ask what the field is."""
+        self.post_message(ExplanationWanted())
+
+
+class TextInput(Input):
+    """A line of text, in which a question mark is text too."""
+
+    BINDINGS = [
+        Binding("f1,ctrl+question_mark", "explain", "Explain", key_display="F1", id="field.explain_text")
+    ]
+
+    def action_explain(self) -> None:
+        """Ask what the field is."""
+        self.post_message(ExplanationWanted())
+
+
+def input_for(field: FieldDescription, text: str, placeholder: str = "") -> Input:
+    """Return the input in which a field is typed."""
+    kind = NumberInput if field.is_numeric else TextInput
+    return kind(text, placeholder, compact=True, select_on_focus=field.is_numeric)
+
+
+class Flag(Widget, can_focus=True):
+    """A yes or a no, in words: it reads the same without colours."""
+
+    DEFAULT_CSS = """
+    Flag {
+        width: auto;
+        height: 1;
+        background: $surface;
+        color: $foreground;
+        pointer: pointer;
+        &:focus {
+            background: $block-cursor-background;
+            color: $block-cursor-foreground;
+            text-style: $block-cursor-text-style;
+        }
+    }
+    """
+
+    BINDINGS = [Binding("enter,space", "turn", "Yes or no", show=False, id="flag.toggle")]
+
+    value: reactive[bool] = reactive(False)
+
+    class Changed(Message):
+        """Someone turned the flag."""
+
+    def __init__(self, value: bool) -> None:
+        super().__init__()
+        self.set_reactive(Flag.value, value)
+
+    def render(self) -> Text:
+        return Text(f"[x] {YES}" if self.value else f"[ ] {NO}", no_wrap=True)
+
+    def get_content_width(self, container: object, viewport: object) -> int:
+        return 7
+
+    def action_turn(self) -> None:
+        """Turn the flag."""
+        self.value = not self.value
+        self.post_message(self.Changed())
+
+    def on_click(self) -> None:
+        self.action_turn()

@@ -1,0 +1,301 @@
+"""A list of models as a table whose cells are edited in place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from pydantic import BaseModel
+from rich.text import Text
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import Binding
+from textual.content import Content
+from textual.coordinate import Coordinate
+from textual.widget import Widget
+from textual.widgets import DataTable, Input, Static
+
+from algorithms.context import Unit
+from algorithms.parameters import Path, Problem, dotted
+from hough_tui.ui.forms.cell_editor import CellEditor
+from hough_tui.ui.forms.cell_table import CellTable
+from hough_tui.ui.forms.columns import cell, columns_of, has, heading, inherited, is_right
+from hough_tui.ui.forms.controls import EXPLAIN, ExplanationWanted
+from hough_tui.ui.forms.edits import duplicate, edit_of, names_of, starter, value_in
+from hough_tui.ui.forms.fields import FieldDescription, Kind
+from hough_tui.ui.forms.labels import within
+from hough_tui.ui.forms.list_bar import ListBar
+from hough_tui.ui.forms.numbers import Unreadable
+from hough_tui.ui.forms.texts import next_of, text_of
+from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited, FieldUnreadable
+from hough_tui.ui.screens.explanation import ExplanationScreen
+
+
+class ListTable(Widget):
+    """The elements of a list of the set: a row for each, a column for each of their fields.
+
+    It posts `FieldEdited`, `FieldUnreadable`, `ElementAdded` and `ElementRemoved`, and shows what
+    `load` gives it. A cell whose value is not taken stays open, with what is wrong below the table.
+
+    Parameters
+    ----------
+    field : the list
+    """
+
+    DEFAULT_CSS = """
+    ListTable {
+        height: auto;
+        layers: default editor;
+        & > .list--empty { display: none; height: 1; padding-left: 1; color: $text-muted; }
+        & > .list--message { display: none; height: auto; padding-left: 2; color: $text-error; }
+        &:focus-within > ListBar > Static { color: $text-accent; }
+    }
+    """
+
+    BINDINGS = [
+        Binding("a", "add", "Add", id="list.add"),
+        Binding("c", "duplicate", "Duplicate", show=False, id="list.duplicate"),
+        Binding("d,delete", "remove", "Remove", id="list.remove"),
+        Binding("question_mark,ctrl+question_mark", "explain", "Explain", key_display="?", id=EXPLAIN),
+        Binding("tab", "finish(1)", "Next cell", show=False, id="list.next_cell"),
+        Binding("shift+tab", "finish(-1)", "Cell before", show=False, id="list.previous_cell"),
+        Binding("escape", "cancel", "Leave as it was", show=False, id="list.cancel"),
+    ]
+
+    def __init__(self, field: FieldDescription) -> None:
+        super().__init__()
+        self.field = field
+        self._elements: Sequence[BaseModel] = ()
+        self._holder: BaseModel | None = None
+        self._unit: Unit | None = None
+        self._columns: tuple[FieldDescription, ...] = ()
+        self._editor: CellEditor | None = None
+        self._new_row: int | None = None
+        self._table = CellTable()
+        self._empty = Static("", classes="list--empty", markup=False)
+        self._message = Static("", classes="list--message", markup=False)
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether nothing that is typed here is wrong."""
+        return self._editor is None or not self._editor.is_wrong
+
+    @property
+    def cursor_path(self) -> Path | None:
+        """Where the value under the cursor stands in the set; None where it stands nowhere."""
+        place = self._table.cursor_coordinate
+        if place.row >= len(self._elements) or place.column >= len(self._columns):
+            return None
+        return (*self.field.path, place.row, *self._columns[place.column].path)
+
+    def compose(self) -> ComposeResult:
+        yield ListBar(self.field)
+        yield self._table
+        yield self._empty
+        yield self._message
+
+    def on_mount(self) -> None:
+        self._show()
+        self.watch(self._table, "scroll_x", self._put_editor, init=False)
+        self.watch(self._table, "scroll_y", self._put_editor, init=False)
+
+    def load(
+        self,
+        field: FieldDescription,
+        elements: Sequence[BaseModel],
+        holder: BaseModel | None = None,
+        unit: Unit | None = None,
+    ) -> None:
+        """Show elements; a cell under edit stays open unless its value is the one that it asked for.
+
+        Parameters
+        ----------
+        field : the list, and with it its path
+        holder : what the list is part of: empty groups of an element are taken from it
+        unit : the unit of lengths
+        """
+        is_same = field.path == self.field.path
+        self.field, self._elements, self._holder, self._unit = field, elements, holder, unit
+        self._columns = columns_of(field.models, unit)
+        if self.is_mounted:
+            self._show()
+        editor = self._editor
+        if editor is None:
+            self.show_problem(None)
+        elif not is_same or editor.place.row >= len(elements):
+            self._close()
+        elif editor.asked is not None and self._value_at(editor.place) == editor.asked[0]:
+            self._close(editor.step)
+
+    def show_problem(self, problem: Problem | None) -> None:
+        """Say below the table what is wrong; None takes it away."""
+        editor = self._editor
+        if problem is not None and editor is not None:
+            editor.refuse()
+        if problem is None or (editor is not None and problem.path == editor.path):
+            self._say(problem.message if problem else None)
+        else:
+            self._say(f"{dotted(problem.path[len(self.field.path) - 1 :])}: {problem.message}")
+
+    def worked_out(self) -> Sequence[tuple[str, str]]:
+        """Return label and unit of the columns that are worked out of the others."""
+        return ()
+
+    def worked_out_cells(self, element: BaseModel) -> Sequence[str]:
+        """Return the cells of those columns."""
+        return ()
+
+    def new_element(self) -> dict[str, Any]:
+        """Return the data of a new element."""
+        return starter(self.field.models[0], names_of(self._elements))
+
+    def action_add(self) -> None:
+        """Ask for a new element below the cursor."""
+        self._insert(self.new_element())
+
+    def action_duplicate(self) -> None:
+        """Ask for another element like the one under the cursor."""
+        row = self._table.cursor_row
+        if row < len(self._elements):
+            self._insert(duplicate(self._elements[row], names_of(self._elements)))
+
+    def action_remove(self) -> None:
+        """Ask for the element under the cursor to go."""
+        row = self._table.cursor_row
+        if row < len(self._elements):
+            self.post_message(ElementRemoved((*self.field.path, row)))
+
+    def action_explain(self) -> None:
+        """Explain the field under the cursor."""
+        place = self._editor.place if self._editor else self._table.cursor_coordinate
+        path = self.cursor_path
+        if path is not None:
+            column = self._columns[place.column]
+            text = self._editor.text if self._editor else text_of(column, self._value_at(place))
+            self.app.push_screen(ExplanationScreen(replace(column, path=path), text))
+
+    def action_finish(self, step: int = 0) -> None:
+        """Ask for what is typed, and go on by some cells when it is taken."""
+        editor = self._editor
+        if editor is None or editor.asked is not None:
+            return
+        meaning = editor.meaning
+        if isinstance(meaning, Unreadable):
+            editor.refuse()
+            self._say(meaning.message)
+            self.post_message(FieldUnreadable(editor.path, meaning.message))
+        elif meaning == editor.value and not editor.is_wrong:
+            self._close(step)
+        else:
+            editor.asked, editor.step = (meaning,), step
+            self._post(editor.place, meaning)
+
+    def action_cancel(self) -> None:
+        """Leave the cell as it was."""
+        editor = self._editor
+        if editor is not None:
+            if editor.is_wrong:
+                # The set's own value again: whoever waits for the cell to be mended is told so.
+                self._post(editor.place, editor.value)
+            self._close()
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        return self._editor is not None if action in ("finish", "cancel") else True
+
+    @on(DataTable.CellSelected)
+    def _selected(self, event: DataTable.CellSelected) -> None:
+        event.stop()
+        self._edit(event.coordinate)
+
+    @on(ListBar.Pressed)
+    async def _pressed(self, event: ListBar.Pressed) -> None:
+        event.stop()
+        self._table.focus(scroll_visible=False)
+        await self.run_action(event.action)
+
+    @on(Input.Submitted)
+    def _submitted(self, event: Input.Submitted) -> None:
+        event.stop()
+        self.action_finish()
+
+    @on(Input.Blurred)
+    def _left(self, event: Input.Blurred) -> None:
+        event.stop()
+        # A terminal that is left, or a screen over this one, is no end of editing.
+        if self._editor is not None and self.app.app_focus and self.screen.focused is not self._editor.line:
+            self.action_finish()
+
+    @on(ExplanationWanted)
+    def _asked(self, event: ExplanationWanted) -> None:
+        event.stop()
+        self.action_explain()
+
+    def _show(self) -> None:
+        extra = self.worked_out()
+        headings = [heading(one.label, one.unit, right=is_right(one)) for one in self._columns]
+        headings += [heading(label, unit, right=True) for label, unit in extra]
+        rows = [
+            [cell(column, element, self._holder) for column in self._columns]
+            + [Text(text, "dim", justify="right") for text in self.worked_out_cells(element)]
+            for element in self._elements
+        ]
+        self._table.show(headings, rows)
+        if self._new_row is not None and self._new_row < len(rows):
+            self._table.move_cursor(row=self._new_row, column=0, animate=False)
+        self._new_row = None
+        self._empty.update(Content(f"no {self.field.label.lower()} yet; a adds one"))
+        self._empty.display = not rows
+
+    def _value_at(self, place: Coordinate) -> Any:
+        return value_in(self._elements[place.row], self._columns[place.column].path)
+
+    def _insert(self, data: dict[str, Any]) -> None:
+        self._new_row = min(self._table.cursor_row + 1, len(self._elements))
+        self.post_message(ElementAdded((*self.field.path, self._new_row), data))
+
+    def _edit(self, place: Coordinate) -> None:
+        if self._editor is not None:
+            # What is typed there must be mended or left first.
+            self._editor.line.focus()
+            return
+        if place.column >= len(self._columns):
+            self._say("this is worked out of the other columns; edit those")
+            return
+        column, path = self._columns[place.column], (*self.field.path, place.row)
+        if not has(self._elements[place.row], column):
+            self._say(f"this one has no {within(column.label)}")
+            return
+        value = self._value_at(place)
+        self._say(None)
+        if column.kind in (Kind.FLAG, Kind.CHOICE):
+            self._post(place, next_of(column, value))
+            return
+        hint = text_of(column, inherited(column, self._holder)) or ("none" if column.optional else "")
+        self._editor = CellEditor(column, place, (*path, *column.path), value, hint)
+        self.mount(self._editor)
+        self._put_editor()
+        self._editor.line.focus(scroll_visible=False)
+
+    def _put_editor(self) -> None:
+        if self._editor is not None:
+            self._editor.put(self._table.cell_region(self._editor.place), self._table.virtual_region)
+
+    def _post(self, place: Coordinate, value: Any) -> None:
+        base = (*self.field.path, place.row)
+        path, found = (*base, *self._columns[place.column].path), self.field.models
+        element = self._elements[place.row]
+        self.post_message(FieldEdited(*edit_of(element, base, path, value, holder=self._holder, found=found)))
+
+    def _close(self, step: int = 0) -> None:
+        editor, self._editor = self._editor, None
+        if editor is not None:
+            if editor.line.has_focus:
+                self._table.focus(scroll_visible=False)
+            editor.remove()
+            self._table.move_cursor(row=editor.place.row, column=max(0, editor.place.column + step))
+        self._say(None)
+
+    def _say(self, words: str | None) -> None:
+        self._message.update(Content(f"! {words}" if words else ""))
+        self._message.display = bool(words)

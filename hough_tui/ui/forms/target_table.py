@@ -1,0 +1,45 @@
+"""The targets of a scenario, with their speeds and headings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from pydantic import BaseModel
+
+from algorithms.parameters import Dimension
+from hough_tui.reports.numerals import significant
+from hough_tui.ui.forms.fields import unit_text
+from hough_tui.ui.forms.list_table import ListTable
+from scenarios.model import Scenario, Target
+
+PART = 0.25
+"""The part of the region that a new target crosses within the batch."""
+
+
+class TargetTable(ListTable):
+    """A row for each target; speed and heading (clockwise from north) are worked out."""
+
+    def worked_out(self) -> Sequence[tuple[str, str]]:
+        return ("Speed", unit_text(Dimension.SPEED, self._unit)), ("Heading", "°")
+
+    def worked_out_cells(self, element: BaseModel) -> Sequence[str]:
+        assert isinstance(element, Target)
+        east, north = element.velocity
+        if element.stands_still:
+            return "0", ""
+        return significant(math.hypot(east, north)), f"{math.degrees(math.atan2(east, north)) % 360.0:.1f}"
+
+    def new_element(self) -> dict[str, Any]:
+        """Return a target in the middle of the region, eastward bound."""
+        scenario = self._holder
+        if not isinstance(scenario, Scenario):
+            return super().new_element()
+        (west, east), (south, north) = scenario.region.x, scenario.region.y
+        speed = PART * (east - west) / (scenario.scans * scenario.interval)
+        # One figure: a start to be edited, not a result.
+        return {
+            "position": [0.5 * (west + east), 0.5 * (south + north)],
+            "velocity": [float(f"{speed:.1g}"), 0.0],
+        }

@@ -1,0 +1,223 @@
+"""The main screen: the set's tree, the views in tabs, the status line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Container, Horizontal
+from textual.screen import Screen
+from textual.widgets import Footer, TabbedContent, TabPane
+
+from hough_tui.ui.widgets.status_line import StatusLine
+
+if TYPE_CHECKING:
+    from algorithms.parameters import Problem
+    from hough_tui.ui.messages import TrialOpened
+    from hough_tui.ui.workspace import Workspace
+
+TABS = {
+    "scenario": "Scenario",
+    "initiator": "Initiator",
+    "look": "Look",
+    "monte-carlo": "Monte Carlo",
+    "results": "Results",
+}
+
+WIDE = 120
+"""Columns from which the tree stands beside the views."""
+
+
+class ViewPane(TabPane):
+    """The place of a view, empty until it is first shown."""
+
+    def render(self) -> str:
+        """Return nothing: an empty pane would show its own name."""
+        return ""
+
+
+class MainScreen(Screen[None]):
+    """The frame of the application; a view is mounted when its tab is first shown."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("f2", "tab('scenario')", "Scenario", id="tab.scenario", show=False),
+        Binding("f3", "tab('initiator')", "Initiator", id="tab.initiator", show=False),
+        Binding("f4", "tab('look')", "Look", id="tab.look", show=False),
+        Binding("f6", "tab('monte-carlo')", "Monte Carlo", id="tab.monte-carlo", show=False),
+        Binding("f7", "tab('results')", "Results", id="tab.results", show=False),
+        Binding("f8", "tree", "Tree of the set", id="main.tree", show=False),
+    ]
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._workspace: Workspace | None = None
+        self._views: dict[str, Any] = {}
+        self._stale: set[str] = set()
+
+    def compose(self) -> ComposeResult:
+        """Lay out the frame."""
+        with Horizontal(id="main"):
+            yield Container(id="tree-place")
+            with TabbedContent(id="tabs"):
+                for name, title in TABS.items():
+                    yield ViewPane(title, id=name)
+        yield StatusLine()
+        yield Footer(show_command_palette=True)
+
+    def on_resize(self) -> None:
+        """Take the tree out of a narrow screen."""
+        self.set_class(self.size.width < WIDE, "narrow")
+
+    # What the application says
+
+    def tell_state(self, text: str | None) -> None:
+        """Say on the status line what is being prepared."""
+        self.query_one(StatusLine).state = text or ""
+
+    def show_workspace(self, workspace: Workspace) -> None:
+        """Show another set; views of the one before are built anew."""
+        self._workspace = workspace
+        self.run_worker(self._rebuild(), exclusive=True, group="rebuild")
+
+    async def _rebuild(self) -> None:
+        from hough_tui.ui.widgets.set_tree import SetTree
+
+        assert self._workspace is not None
+        for view in self._views.values():
+            await view.remove()
+        self._views.clear()
+        self._stale.clear()
+        place = self.query_one("#tree-place")
+        await place.remove_children()
+        await place.mount(SetTree())
+        self.show_set(self._workspace)
+        await self._show_tab(self.query_one(TabbedContent).active)
+
+    def show_set(self, workspace: Workspace) -> None:
+        """Show the set as it is now: at once in the view that is seen, in the others when they are."""
+        from hough_tui.ui.widgets.set_tree import SetTree
+
+        for tree in self.query(SetTree):
+            tree.show(workspace.given)
+        status = self.query_one(StatusLine)
+        status.file = (
+            str(workspace.path) if workspace.path else f"{workspace.given.name} (bundled, not saved)"
+        )
+        status.is_changed = workspace.is_changed
+        active = self.query_one(TabbedContent).active
+        self._stale = set(self._views) - {active}
+        if active in self._views:
+            self._views[active].show_set(workspace.given)
+        self.show_soundness()
+
+    def refuse(self, problem: Problem) -> None:
+        """Put beside its field why the last edit was not taken."""
+        view = self._views.get(self.query_one(TabbedContent).active)
+        if hasattr(view, "refuse"):
+            view.refuse([problem])
+        self.show_soundness()
+
+    def show_soundness(self) -> None:
+        """Say whether a form holds something wrong; nothing runs meanwhile."""
+        reason = self.why_not_runnable()
+        self.query_one(StatusLine).is_wrong = reason is not None
+        for view in self._views.values():
+            if hasattr(view, "set_runnable"):
+                view.set_runnable(reason)
+
+    def why_not_runnable(self) -> str | None:
+        """Return why nothing may run or be saved, in words; None where all is well."""
+        for name, view in self._views.items():
+            if any(not form.is_sound for form in view.query("ModelForm")):
+                return f"a field in the form of {TABS[name]} is wrong; mend it, or take it back with Ctrl+Z"
+        return None
+
+    # Views
+
+    @on(TabbedContent.TabActivated)
+    async def _activate(self, event: TabbedContent.TabActivated) -> None:
+        if event.pane.id in TABS:
+            await self._show_tab(event.pane.id or "")
+
+    async def _show_tab(self, name: str) -> None:
+        if self._workspace is None or not name:
+            return
+        if name not in self._views:
+            view = _view(name)
+            self._views[name] = view
+            await self.query_one(f"#{name}", TabPane).mount(view)
+            view.show_set(self._workspace.given)
+            self.show_soundness()
+        elif name in self._stale:
+            self._stale.discard(name)
+            self._views[name].show_set(self._workspace.given)
+
+    async def action_tab(self, name: str) -> None:
+        """Show a view."""
+        self.query_one(TabbedContent).active = name
+        await self._show_tab(name)
+        if name in self._views:
+            self._views[name].take_focus()
+
+    def action_tree(self) -> None:
+        """Show or hide the tree of the set."""
+        self.toggle_class("with-tree" if self.size.width < WIDE else "without-tree")
+
+    def run_experiment(self) -> None:
+        """Run the experiment of the Monte Carlo view."""
+        self.run_worker(self._run_experiment(), exclusive=True, group="run")
+
+    async def _run_experiment(self) -> None:
+        await self.action_tab("monte-carlo")
+        if "monte-carlo" in self._views:
+            self.show_soundness()
+            self._views["monte-carlo"].action_run()
+
+    def open_trial(self, opened: TrialOpened) -> None:
+        """Look at a trial."""
+        self.run_worker(self._open_trial(opened), exclusive=True, group="open-trial")
+
+    async def _open_trial(self, opened: TrialOpened) -> None:
+        await self.action_tab("look")
+        if "look" in self._views:
+            self._views["look"].open_trial(opened)
+
+    async def choose(self, part: str, index: int) -> None:
+        """Show a scenario, an initiator or an experiment of the set."""
+        name = {"scenarios": "scenario", "initiators": "initiator", "experiments": "monte-carlo"}[part]
+        await self.action_tab(name)
+        if name in self._views and hasattr(self._views[name], "choose"):
+            self._views[name].choose(index)
+
+    async def on_set_tree_chosen(self, event: Any) -> None:
+        """Show what was chosen in the tree."""
+        await self.choose(event.part, event.index)
+
+    def help_text(self) -> str:
+        """Return what the view that is seen is for."""
+        active = self.query_one(TabbedContent).active
+        view = self._views.get(active)
+        return f"{TABS.get(active, '')}\n\n{getattr(view, 'HELP', '')}".strip()
+
+    def stop_work(self) -> None:
+        """Stop what runs in the background."""
+        for view in self._views.values():
+            if hasattr(view, "stop_work"):
+                view.stop_work()
+
+
+def _view(name: str) -> Any:
+    """Return a new view; its module, with all that is heavy, is imported here for the first time."""
+    if name == "scenario":
+        from hough_tui.ui.views.scenario import ScenarioView as View
+    elif name == "initiator":
+        from hough_tui.ui.views.initiator import InitiatorView as View
+    elif name == "look":
+        from hough_tui.ui.views.look import LookView as View
+    elif name == "monte-carlo":
+        from hough_tui.ui.views.monte_carlo import MonteCarloView as View
+    else:
+        from hough_tui.ui.views.results import ResultsView as View
+    return View()

@@ -1,0 +1,204 @@
+"""Look: one trial, as the initiators see it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from textual import work
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal
+from textual.widget import Widget
+from textual.worker import get_current_worker
+
+from algorithms.errors import RequestError
+from algorithms.parameters import Parameters
+from hough_tui.experiments.choice import seed_of
+from hough_tui.experiments.look import TrialLook, look, picture
+from hough_tui.ui.views.look_panel import LookPanel
+from scenarios.model import InitiatorEntry, MatchCriterion, Scenario, ScenarioSet
+
+if TYPE_CHECKING:
+    from hough_tui.ui.messages import TrialOpened
+
+DEBOUNCE = 0.06
+"""Seconds without a further change before a trial is worked out anew."""
+
+WIDE, VERY_WIDE = 110, 150
+
+
+class LookView(Widget):
+    """One trial: plane, accumulator and tracks of one initiator, or of two side by side."""
+
+    HELP = (
+        "One trial, as an initiator sees it. The plane shows the plots (older scans dimmer), the true "
+        "paths, and the tracks as lines through their plots, false ones apart. The accumulator shows the "
+        "votes of θ and ρ: the plots that voted for the cell under its cursor light up in the plane, and "
+        "Enter tells why the cell is a peak. Choosing a plot in the plane draws its sinusoid over the "
+        "accumulator; choosing a track in the table marks its cell and its plots. Tab goes from panel to "
+        "panel; y copies the tracks, to the clipboard and to a file."
+    )
+    DEFAULT_CSS = """
+    LookView { layout: vertical; height: 1fr; }
+    LookView #looks { height: 1fr; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("right_square_bracket", "trial(1)", "Next trial", id="look.next-trial", show=False),
+        Binding("left_square_bracket", "trial(-1)", "Previous trial", id="look.previous-trial", show=False),
+        Binding("i", "initiator(1)", "Next initiator", id="look.next-initiator", show=False),
+        Binding("I", "initiator(-1)", "Previous initiator", id="look.previous-initiator", show=False),
+        Binding("s", "scenario", "Next scenario", id="look.next-scenario", show=False),
+        Binding("b", "side_by_side", "Two initiators side by side", id="look.side-by-side", show=False),
+    ]
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._given: ScenarioSet | None = None
+        self._scenario, self._entry, self._trial = 0, 0, 0
+        self._opened: TrialOpened | None = None
+        self._is_double = False
+        self._timer: Any = None
+
+    def compose(self) -> ComposeResult:
+        """Lay out one panel; a second one joins it where two initiators are compared."""
+        with Horizontal(id="looks"):
+            yield LookPanel()
+
+    def on_resize(self) -> None:
+        """Arrange the panels for the room that there is."""
+        self._arrange()
+
+    def _arrange(self) -> None:
+        panels = list(self.query(LookPanel))
+        room = self.size.width // max(1, len(panels))
+        for found in panels:
+            found.layout_kind = "wide" if room >= WIDE else "stacked" if len(panels) > 1 else "single"
+            if len(panels) > 1 and self.size.height < 30:
+                found.layout_kind = "single"
+
+    # What is looked at
+
+    def show_set(self, given: ScenarioSet) -> None:
+        """Show the set as it is now, the same trial where it is still there."""
+        self._given = given
+        self._opened = None
+        self._scenario = min(self._scenario, len(given.scenarios) - 1)
+        self._entry = min(self._entry, max(0, len(given.initiators) - 1))
+        self._ask()
+
+    def open_trial(self, opened: TrialOpened) -> None:
+        """Show a trial of a run, with the values that were swept there."""
+        self._opened = opened
+        self._trial = opened.trial
+        if self._given is not None:
+            names = [found.name for found in self._given.scenarios]
+            entries = [found.name for found in self._given.initiators]
+            self._scenario = names.index(opened.scenario.name) if opened.scenario.name in names else 0
+            self._entry = entries.index(opened.entry.name) if opened.entry.name in entries else 0
+        self._ask()
+
+    def choose(self, index: int) -> None:
+        """Look at another scenario of the set."""
+        self._scenario, self._opened = index, None
+        self._ask()
+
+    def action_trial(self, step: int) -> None:
+        """Look at the next or the previous trial."""
+        self._trial = max(0, self._trial + step)
+        self._ask()
+
+    def action_initiator(self, step: int) -> None:
+        """Look through the eyes of another initiator."""
+        if self._given is not None and self._given.initiators:
+            self._entry = (self._entry + step) % len(self._given.initiators)
+            self._opened = None
+            self._ask()
+
+    def action_scenario(self) -> None:
+        """Look at the next scenario."""
+        if self._given is not None:
+            self.choose((self._scenario + 1) % len(self._given.scenarios))
+
+    async def action_side_by_side(self) -> None:
+        """Put the next initiator beside this one, or take it away again."""
+        if not self._is_double and (self._given is None or len(self._given.initiators) < 2):
+            self.notify("The set has one initiator only", markup=False)
+            return
+        if not self._is_double and self.size.width < VERY_WIDE:
+            self.notify(f"Two initiators side by side need {VERY_WIDE} columns", markup=False)
+            return
+        self._is_double = not self._is_double
+        if self._is_double:
+            await self.query_one("#looks").mount(LookPanel())
+        else:
+            await self.query(LookPanel).last().remove()
+        self._arrange()
+        self._ask()
+
+    def take_focus(self) -> None:
+        """Put the focus on the plane."""
+        self.query(LookPanel).first().take_focus()
+
+    # Working it out
+
+    def _ask(self) -> None:
+        """Work the trial out, once nothing more has changed for a moment."""
+        if self._timer is not None:
+            self._timer.stop()
+        self._timer = self.set_timer(DEBOUNCE, self._begin)
+
+    def _begin(self) -> None:
+        if self._given is None:
+            return
+        if not self._given.initiators:
+            self.query(LookPanel).first().query_one("#caption").update("The set has no initiators.")  # type: ignore[attr-defined]
+            return
+        if self._opened is not None:
+            scenario, seed = self._opened.scenario, self._opened.seed
+            chosen = [(self._opened.entry, self._opened.parameters)]
+        else:
+            scenario = self._given.scenarios[self._scenario]
+            seed = seed_of(self._given, scenario)
+            chosen = [(self._given.initiators[self._entry], None)]
+        if self._is_double:
+            chosen.append((self._given.initiators[(self._entry + 1) % len(self._given.initiators)], None))
+        self._work(scenario, seed, self._trial, chosen, criterion_of(self._given, scenario))
+
+    @work(thread=True, exclusive=True, exit_on_error=False, group="look", name="look")
+    def _work(
+        self,
+        scenario: Scenario,
+        seed: int,
+        trial: int,
+        chosen: list[tuple[InitiatorEntry, Parameters | None]],
+        criterion: MatchCriterion | None,
+    ) -> None:
+        """Draw the trial and let the initiators work on it."""
+        worker = get_current_worker()
+        drawn = picture(scenario, seed, trial)
+        found: list[TrialLook | str] = []
+        for entry, parameters in chosen:
+            if worker.is_cancelled:
+                return
+            try:
+                resolved = parameters or entry.parameters.resolved(scenario.context)
+                found.append(look(drawn, entry, resolved, criterion))
+            except RequestError as error:
+                found.append(f"{entry.name}: {error}")
+        if not worker.is_cancelled:
+            self.app.call_from_thread(self._show, found)
+
+    def _show(self, found: list[TrialLook | str]) -> None:
+        for panel, seen in zip(self.query(LookPanel), found, strict=False):
+            if isinstance(seen, str):
+                panel.query_one("#caption").update(seen)  # type: ignore[attr-defined]
+            else:
+                panel.show(seen)
+
+
+def criterion_of(given: ScenarioSet, scenario: Scenario) -> MatchCriterion | None:
+    """Return the criterion of the first experiment on a scenario; None where there is none."""
+    for experiment in given.experiments:
+        if scenario.name in (found.name for found in given.chosen_scenarios(experiment)):
+            return experiment.criterion
+    return None

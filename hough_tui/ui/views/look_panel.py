@@ -1,0 +1,229 @@
+"""One initiator's view of a trial: plane, accumulator and tracks, linked with one another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.reactive import reactive
+from textual.widget import Widget
+from textual.widgets import Static
+
+from algorithms.hough.inspection import columns_of, voters
+from algorithms.scoring import DUPLICATE, FALSE, FINDER
+from hough_tui.reports.documents import track_csv
+from hough_tui.ui.copying import copy
+from hough_tui.ui.screens.why_peak import WhyPeak
+from hough_tui.ui.widgets.heatmap import Heatmap
+from hough_tui.ui.widgets.heatmap_scene import HeatmapScene
+from hough_tui.ui.widgets.plane import Plane
+from hough_tui.ui.widgets.plane_scene import PlaneScene, PlaneTrack
+from hough_tui.ui.widgets.track_grid import TrackGrid
+
+if TYPE_CHECKING:
+    from hough_tui.experiments.look import TrialLook
+
+STATES = {FALSE: "false", FINDER: "found", DUPLICATE: "duplicate"}
+PANELS = ("plane", "accumulator", "tracks")
+
+MOST_DRAWN = 300
+"""Weaker tracks than these are not drawn: they would hide the plots."""
+
+
+class LookPanel(Widget):
+    """Plane, accumulator and tracks of one initiator on one draw."""
+
+    DEFAULT_CSS = """
+    LookPanel { layout: vertical; height: 1fr; width: 1fr; }
+    LookPanel #caption { height: 1; color: $text-muted; padding: 0 1; }
+    LookPanel #panels { height: 1fr; }
+    LookPanel #plane-side { width: 1fr; height: 1fr; }
+    LookPanel #vote-side { width: 1fr; height: 1fr; }
+    LookPanel #no-accumulator { height: 3fr; content-align: center middle; color: $text-muted; }
+    LookPanel #no-accumulator { display: none; }
+    LookPanel Heatmap { height: 3fr; }
+    LookPanel TrackGrid { height: 2fr; }
+    LookPanel.without-accumulator Heatmap { display: none; }
+    LookPanel.without-accumulator #no-accumulator { display: block; }
+    LookPanel.stacked #panels { layout: vertical; }
+    LookPanel.one-plane #vote-side { display: none; }
+    LookPanel.one-accumulator #plane-side { display: none; }
+    LookPanel.one-accumulator TrackGrid { display: none; }
+    LookPanel.one-tracks #plane-side { display: none; }
+    LookPanel.one-tracks Heatmap { display: none; }
+    LookPanel.one-tracks #no-accumulator { display: none; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("y", "copy", "Copy the tracks", id="look.copy", show=False),
+        Binding("v", "next_panel", "Plane, accumulator or tracks", id="look.panel", show=False),
+    ]
+
+    layout_kind: reactive[str] = reactive("wide")
+    panel: reactive[str] = reactive("plane")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._seen: TrialLook | None = None
+
+    def compose(self) -> ComposeResult:
+        """Lay out the three panels."""
+        yield Static("", id="caption", markup=False)
+        with Horizontal(id="panels"):
+            with Vertical(id="plane-side"):
+                yield Plane()
+            with Vertical(id="vote-side"):
+                yield Heatmap()
+                yield Static("This initiator has no accumulator.", id="no-accumulator", markup=False)
+                yield TrackGrid()
+
+    def show(self, seen: TrialLook) -> None:
+        """Show what an initiator made of a draw."""
+        is_other_draw = self._seen is None or self._seen.picture is not seen.picture
+        self._seen = seen
+        self.query_one("#caption", Static).update(caption(seen))
+        plane = self.query_one(Plane)
+        plane.show(plane_scene(seen))
+        if is_other_draw:
+            plane.highlight(np.zeros(0, np.int64))
+        self.set_class(seen.accumulator is None, "without-accumulator")
+        if seen.accumulator is not None:
+            self.query_one(Heatmap).show(heatmap_scene(seen))
+        self.query_one(TrackGrid).show(seen)
+
+    # Which of the panels are seen
+
+    def watch_layout_kind(self) -> None:
+        """Lay the panels out side by side, one above the other, or one at a time."""
+        self._arrange()
+
+    def watch_panel(self) -> None:
+        """Show another panel where they are shown one at a time."""
+        self._arrange()
+
+    def _arrange(self) -> None:
+        self.set_class(self.layout_kind == "stacked", "stacked")
+        for name in PANELS:
+            self.set_class(self.layout_kind == "single" and self.panel == name, f"one-{name}")
+
+    def action_next_panel(self) -> None:
+        """Go to the next panel."""
+        self.panel = PANELS[(PANELS.index(self.panel) + 1) % len(PANELS)]
+        self.take_focus()
+
+    def action_copy(self) -> None:
+        """Copy the tracks as CSV, to the clipboard and to a file."""
+        if self._seen is not None:
+            copy(self.app, track_csv(self._seen.tracks), f"{self._seen.entry.name}-tracks.csv")
+
+    def take_focus(self) -> None:
+        """Put the focus on the panel that is seen first."""
+        target: Widget = self.query_one(
+            {"plane": Plane, "accumulator": Heatmap, "tracks": TrackGrid}[self.panel]
+        )
+        target.focus()
+
+    # Links between the panels
+
+    @on(Heatmap.CellHighlighted)
+    def _light_up_voters(self, event: Heatmap.CellHighlighted) -> None:
+        event.stop()
+        if self._seen is not None and self._seen.accumulator is not None:
+            position, grid = self._seen.picture.plots.position, self._seen.accumulator.grid
+            self.query_one(Plane).highlight(voters(position, grid, event.row, event.column))
+
+    @on(Heatmap.CellChosen)
+    def _explain(self, event: Heatmap.CellChosen) -> None:
+        event.stop()
+        if self._seen is not None and self._seen.accumulator is not None:
+            self.app.push_screen(WhyPeak(self._seen, event.row, event.column))
+
+    @on(Plane.PlotChosen)
+    def _trace_plot(self, event: Plane.PlotChosen) -> None:
+        event.stop()
+        if self._seen is None or self._seen.accumulator is None:
+            return
+        grid = self._seen.accumulator.grid
+        position = self._seen.picture.plots.position[[event.index]]
+        columns = columns_of(position, grid, np.arange(grid.theta_bins))[:, 0]
+        self.query_one(Heatmap).trace(np.where(columns < grid.rho_bins, columns, -1))
+
+    @on(Plane.TrackChosen)
+    def _mark_chosen_track(self, event: Plane.TrackChosen) -> None:
+        event.stop()
+        self._mark_track(event.index)
+
+    @on(TrackGrid.TrackHighlighted)
+    def _mark_listed_track(self, event: TrackGrid.TrackHighlighted) -> None:
+        event.stop()
+        self._mark_track(event.index)
+
+    def _mark_track(self, index: int) -> None:
+        seen = self._seen
+        if seen is None or index >= len(seen.tracks):
+            return
+        plane = self.query_one(Plane)
+        plane.choose_track(index if index < MOST_DRAWN else None)
+        if seen.accumulator is not None:
+            cell = seen.accumulator.grid.cell(float(seen.tracks.theta[index]), float(seen.tracks.rho[index]))
+            if cell is not None:
+                self.query_one(Heatmap).move_cursor(*cell)
+        plane.highlight(seen.tracks.plots[index])
+
+
+def caption(seen: TrialLook) -> str:
+    """Return one line that says what is seen."""
+    scenario = seen.picture.scenario
+    text = f"{seen.entry.name} on {scenario.name}, trial {seen.picture.trial}: {len(seen.tracks)} tracks"
+    if seen.state is not None:
+        counts = [(name, int((seen.state == state).sum())) for state, name in STATES.items()]
+        text += (
+            " (" + ", ".join(f"{count} {name}" for name, count in counts if count) + ")"
+            if any(count for _, count in counts)
+            else ""
+        )
+    return f"{text} · {len(seen.picture.plots)} plots · {seen.seconds * 1e3:.2f} ms"
+
+
+def plane_scene(seen: TrialLook) -> PlaneScene:
+    """Return the plane of a trial."""
+    position = seen.picture.plots.position[:, :2]
+    tracks = tuple(
+        PlaneTrack(
+            position[seen.tracks.plots[index]],
+            "unknown" if seen.state is None else STATES[int(seen.state[index])],
+            str(index + 1),
+        )
+        for index in range(min(len(seen.tracks), MOST_DRAWN))
+    )
+    picture = seen.picture
+    return PlaneScene(
+        position,
+        picture.plots.scan,
+        picture.scenario.region.box,
+        picture.scenario.unit.value,
+        picture.origin,
+        picture.paths,
+        tracks,
+    )
+
+
+def heatmap_scene(seen: TrialLook) -> HeatmapScene:
+    """Return the accumulator of a trial."""
+    assert seen.accumulator is not None
+    grid = seen.accumulator.grid
+    cells = (
+        grid.cell(float(theta), float(rho))
+        for theta, rho in zip(seen.tracks.theta[:MOST_DRAWN], seen.tracks.rho[:MOST_DRAWN], strict=True)
+    )
+    return HeatmapScene(
+        seen.accumulator.votes,
+        np.degrees(grid.theta),
+        grid.rho,
+        seen.picture.scenario.unit.value,
+        "votes",
+        tuple(cell for cell in cells if cell is not None),
+    )

@@ -1,0 +1,219 @@
+"""Runs as the views show them: one row a cell, and the trials behind each row."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.errors import RequestError
+from hough_tui.experiments.columns import TrialColumns
+from hough_tui.experiments.engine import Job
+from hough_tui.experiments.plan import Cell, plan_run
+from hough_tui.experiments.results import result
+from hough_tui.experiments.store import Run
+from hough_tui.experiments.tallies import Row, tally
+
+Identity = tuple[str, str, str, str, tuple[tuple[str, float], ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class RowTrials:
+    """The trials behind one row.
+
+    Attributes
+    ----------
+    cell : what ran
+    numbers : int64 (trials,), which trials of the experiment they are
+    columns : what each of them gave
+    """
+
+    cell: Cell
+    numbers: NDArray[np.int64]
+    columns: TrialColumns
+
+
+class ShownRun(ABC):
+    """A run on the screen.
+
+    Attributes
+    ----------
+    name : what files that are made of it are called
+    rows : one a cell, in the order of the plan; they are replaced, never changed
+    """
+
+    name: str
+    rows: tuple[Row, ...]
+
+    @abstractmethod
+    def trials(self, index: int) -> RowTrials:
+        """Return the trials behind a row; it may take long.
+
+        Raises
+        ------
+        RequestError
+            Where they cannot be told.
+        """
+
+    @abstractmethod
+    def document(self) -> dict[str, Any]:
+        """Return the result document, as it is kept and exported; it may take long.
+
+        Raises
+        ------
+        RequestError
+            Where there is none yet.
+        """
+
+
+class LiveRun(ShownRun):
+    """A run of this session, under way or over."""
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+        self.name = "+".join(given.name for given in job.plan.sets)
+        self.rows = tuple(map(blank_row, job.plan.cells))
+        self.is_over = False
+        self._found: Run | None = None
+
+    def snapshot(self) -> tuple[Row, ...]:
+        """Return the rows over the trials that are finished by now.
+
+        Notes
+        -----
+        A cell that has no more trials than in the rows at hand keeps its row.
+        """
+        return tuple(
+            row if row["trials"] == self.job.progress.done[index] else self._tallied(index, row)
+            for index, row in enumerate(self.rows)
+        )
+
+    def trials(self, index: int) -> RowTrials:
+        cell = self.job.plan.cells[index]
+        (numbers,) = np.nonzero(self._finished(index))
+        if not len(numbers):
+            raise RequestError("no trial of this row is finished yet")
+        columns = self.job.columns[index]
+        if len(numbers) < cell.experiment.trials:
+            columns = columns.part(numbers)
+        return RowTrials(cell, numbers, columns)
+
+    def document(self) -> dict[str, Any]:
+        return self.found().document
+
+    def found(self) -> Run:
+        """Return the run as it is kept; it may take long.
+
+        Raises
+        ------
+        RequestError
+            Where it is still under way.
+        """
+        if not self.is_over:
+            raise RequestError("the run is still under way; wait for its end, or cancel it")
+        if self._found is None:
+            self._found = result(self.job)
+        return self._found
+
+    def _tallied(self, index: int, row: Row) -> Row:
+        cell, columns = self.job.plan.cells[index], self.job.columns[index]
+        finished = self._finished(index)
+        if not finished.any():
+            return row
+        if not finished.all():
+            columns = columns.part(finished)
+        return tally(cell, columns, float(self.job._seconds[index]))
+
+    def _finished(self, index: int) -> NDArray[np.bool_]:
+        # A copy: the workers go on, and all columns must be cut by one and the same mask.
+        return self.job._finished[index].copy()
+
+
+class KeptRun(ShownRun):
+    """A run from the store."""
+
+    def __init__(self, name: str, run: Run) -> None:
+        self.name = name
+        self.run = run
+        self.rows = tuple(run.document["rows"])
+        self._cells = _cells(run)
+
+    def trials(self, index: int) -> RowTrials:
+        cell, row = self._cells[index], self.rows[index]
+        if cell is None:
+            raise RequestError(
+                "this row's scenario and initiator cannot be told from the sets that were kept with the "
+                "run, so its trials cannot be drawn again"
+            )
+        if row["trials"] < cell.experiment.trials:
+            raise RequestError(
+                f"the run was cancelled after {row['trials']:,} of this row's {cell.experiment.trials:,} "
+                "trials, and which ones they were is not kept; run it again to open its trials"
+            )
+        return RowTrials(cell, np.arange(row["trials"]), trial_columns(self.run.columns[index]))
+
+    def document(self) -> dict[str, Any]:
+        return self.run.document
+
+
+def blank_row(cell: Cell) -> Row:
+    """Return the row of a cell none of whose trials is finished."""
+    return {
+        "set": cell.set_name,
+        "experiment": cell.experiment.name,
+        "scenario": cell.scenario.name,
+        "initiator": cell.entry.name,
+        "swept": dict(cell.swept),
+        "trials": 0,
+        "seed": cell.experiment.seed,
+        "unit": cell.scenario.unit.value,
+        "criterion": cell.criterion.document,
+    }
+
+
+def identity(row: Mapping[str, Any]) -> Identity:
+    """Return what makes two rows of different runs the same one."""
+    swept = tuple(sorted((row.get("swept") or {}).items()))
+    return row["set"], row["experiment"], row["scenario"], row["initiator"], swept
+
+
+def cell_words(cell: Cell) -> str:
+    """Return what ran in a cell: scenario, initiator, swept values."""
+    swept = (f"{key} {value:g}" for key, value in cell.swept.items())
+    return " · ".join((cell.scenario.name, cell.entry.name, *swept))
+
+
+def trial_columns(arrays: Mapping[str, NDArray[Any]]) -> TrialColumns:
+    """Return the per-trial columns of a row as they were kept.
+
+    Raises
+    ------
+    RequestError
+        Where one is missing.
+    """
+    names = [field.name for field in fields(TrialColumns)]
+    missing = [name for name in names if name not in arrays]
+    if missing:
+        raise RequestError(f"the run was kept without the columns {', '.join(missing)}")
+    return TrialColumns(**{name: arrays[name] for name in names})
+
+
+def _cells(run: Run) -> list[Cell | None]:
+    """Return the cell of each row, None where the sets do not hold it.
+
+    The rows are those cells, in their order, that had finished trials.
+    """
+    rows = run.document["rows"]
+    try:
+        cells = iter(plan_run(run.sets).cells)
+    except RequestError:
+        return [None] * len(rows)
+    found: list[Cell | None] = []
+    for row in rows:
+        wanted = identity(row)
+        found.append(next((cell for cell in cells if identity(blank_row(cell)) == wanted), None))
+    return found

@@ -1,0 +1,158 @@
+"""What the heat-map shows: an array over θ and ρ, and where in it is what."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hough_tui.ui.drawing.axes import Axis, decimals_of
+from hough_tui.ui.drawing.viewport import Limits
+
+
+@dataclass(frozen=True, eq=False)
+class HeatmapScene:
+    """An accumulator, or another array over the same cells.
+
+    Positions in it are counted in cells from the outer corner of the first one: cell (0, 0) has
+    its middle at 0.5, 0.5.
+
+    Attributes
+    ----------
+    values : (theta bins, rho bins); what is no number counts as the least
+    theta_deg, rho : centres of rows and columns, evenly spaced and ascending
+    unit : of ρ
+    label : what the values are
+    marks : row and column of the cells that are tracks
+    """
+
+    values: NDArray[Any]
+    theta_deg: NDArray[np.float64]
+    rho: NDArray[np.float64]
+    unit: str
+    label: str = "votes"
+    marks: tuple[tuple[int, int], ...] = ()
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of rows and of columns."""
+        rows, columns = self.values.shape
+        return rows, columns
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is no cell at all."""
+        return self.values.size == 0
+
+    @cached_property
+    def comparable(self) -> NDArray[Any]:
+        """The values, what is not finite replaced by the least or the greatest that is."""
+        if self.is_empty or np.issubdtype(self.values.dtype, np.integer):
+            return self.values
+        finite = np.isfinite(self.values)
+        if finite.all():
+            return self.values
+        known = self.values[finite] if finite.any() else np.zeros(1)
+        found: NDArray[Any] = np.nan_to_num(
+            self.values, nan=known.min(), posinf=known.max(), neginf=known.min()
+        )
+        return found
+
+    @cached_property
+    def mark_cells(self) -> NDArray[np.int64]:
+        """Row and column (k, 2) of the marks."""
+        return np.array(self.marks, np.int64).reshape(-1, 2)
+
+    @cached_property
+    def extremes(self) -> tuple[float, float]:
+        """What the lowest and the highest level stand for: 0 or what is below it, and the greatest value."""
+        if self.is_empty:
+            return 0.0, 0.0
+        return min(0.0, float(self.comparable.min())), float(self.comparable.max())
+
+    @cached_property
+    def peaks(self) -> NDArray[np.int64]:
+        """Row and column (k, 2) of the local maxima, the strongest first, equals in the order of the cells.
+
+        A cell is one if it exceeds the least, and no neighbour exceeds it; of neighbours that are
+        equal, the first.
+        """
+        values = self.comparable
+        found = values > self.extremes[0]
+        for down, along in ((1, 1), (1, 0), (1, -1), (0, 1)):
+            first = values[: len(values) - down, max(0, -along) : values.shape[1] - max(0, along)]
+            second = values[down:, max(0, along) : values.shape[1] + min(0, along)]
+            found[: len(values) - down, max(0, -along) : values.shape[1] - max(0, along)] &= first >= second
+            found[down:, max(0, along) : values.shape[1] + min(0, along)] &= second > first
+        cells = np.argwhere(found)
+        order = np.argsort(-values[found].astype(np.float64), kind="stable")
+        return cells[order]
+
+    @property
+    def strongest(self) -> tuple[int, int]:
+        """Row and column of the greatest value, the first of equals."""
+        row, column = np.unravel_index(int(np.argmax(self.comparable)), self.shape)
+        return int(row), int(column)
+
+    def home(self) -> Limits:
+        """Return limits with every cell in view, the first row at the top as in a printed matrix."""
+        rows, columns = self.shape
+        return Limits(0.0, max(1.0, columns), max(1.0, rows), 0.0)
+
+    def axes(self, limits: Limits) -> tuple[Axis, Axis]:
+        """Return the axes of ρ and θ of a part."""
+        across = Axis(
+            *self._ends(self.rho, limits.left, limits.right),
+            f"ρ [{self.unit}]" if self.unit else "ρ",
+            only=_only(self.rho),
+        )
+        ends = self._ends(self.theta_deg, limits.top, limits.bottom)
+        return across, Axis(*ends, "°", is_angle=True, only=_only(self.theta_deg))
+
+    def words(self, row: int, column: int) -> tuple[str, str, str]:
+        """Return θ, ρ and value of a cell as text."""
+        theta = _centre(self.theta_deg, row)
+        rho = _centre(self.rho, column)
+        value = self.values[row, column]
+        if np.issubdtype(self.values.dtype, np.integer):
+            return f"{theta}°", f"{rho} {self.unit}", f"{int(value)} {self.label}"
+        return f"{theta}°", f"{rho} {self.unit}", f"{float(value):.4g} {self.label}"
+
+    def at(self, other: HeatmapScene, limits: Limits) -> Limits:
+        """Return the part of another scene with the θ and ρ of a part of this one."""
+        rho = [other._place(other.rho, value) for value in self._ends(self.rho, limits.left, limits.right)]
+        theta = self._ends(self.theta_deg, limits.top, limits.bottom)
+        top, bottom = (other._place(other.theta_deg, value) for value in theta)
+        return Limits(rho[0], rho[1], bottom, top)
+
+    @staticmethod
+    def _ends(centres: NDArray[np.float64], start: float, end: float) -> tuple[float, float]:
+        first, step = spacing(centres)
+        return first + (start - 0.5) * step, first + (end - 0.5) * step
+
+    @staticmethod
+    def _place(centres: NDArray[np.float64], value: float) -> float:
+        first, step = spacing(centres)
+        return (value - first) / step + 0.5
+
+
+def spacing(centres: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the first of evenly spaced centres and their distance, which for a single one is 1."""
+    if len(centres) < 2:
+        return (float(centres[0]) if len(centres) else 0.0), 1.0
+    return float(centres[0]), float(centres[-1] - centres[0]) / (len(centres) - 1) or 1.0
+
+
+def _only(centres: NDArray[np.float64]) -> float | None:
+    return float(centres[0]) if len(centres) == 1 else None
+
+
+def _centre(centres: NDArray[np.float64], index: int) -> str:
+    """Return a centre with as many decimals as tell it from its neighbours and name it rightly."""
+    first, step = spacing(centres)
+    # Centres often lie half a step beside multiples of the step.
+    decimals = max(decimals_of(step), decimals_of(abs(first % step) or step)) if len(centres) > 1 else 3
+    return f"{round(float(centres[index]), min(4, decimals)) + 0.0:.{min(4, decimals)}f}"
