@@ -14,8 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from algorithms.errors import RequestError
-from scenarios import marked_yaml
-from scenarios.marked_yaml import Mark, MarkedDocument, read, rewrite, write
+from scenarios.marked_yaml import Mark, MarkedDocument, read, rewrite, rewriting, write
 
 
 def same(one: Any, other: Any) -> bool:
@@ -47,7 +46,7 @@ def no_fallback(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(data: Any) -> str:
         raise AssertionError(f"no small change was found for {data!r}")
 
-    monkeypatch.setattr(marked_yaml, "write", refuse)
+    monkeypatch.setattr(rewriting, "write", refuse)
 
 
 # Reading
@@ -148,7 +147,7 @@ again: *anchor
         (("name", 0), (2, 7), (2, 7)),
     ],
 )
-def test_marks(path: marked_yaml.Path, value: tuple[int, int], key: tuple[int, int]) -> None:
+def test_marks(path: tuple[str | int, ...], value: tuple[int, int], key: tuple[int, int]) -> None:
     document = read(MARKED, "set.yaml")
     assert document.mark(path) == Mark(*value)
     assert document.mark(path, key=True) == Mark(*key)
@@ -384,7 +383,7 @@ def test_data_that_could_not_be_read_back() -> None:
 def test_rewrite_arrives(old: Any, new: Any) -> None:
     text = write(old)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(marked_yaml, "write", lambda data: pytest.fail(f"no small change for {data!r}"))
+        patch.setattr(rewriting, "write", lambda data: pytest.fail(f"no small change for {data!r}"))
         assert rewrite(text, old) == text
         assert same(data_of(rewrite(text, new)), new)
 
@@ -415,7 +414,7 @@ def test_small_changes_arrive(drawn: st.DataObject, old: Any, new: Any) -> None:
     text = write(old)
     data = change_somewhere(copy.deepcopy(old), new, drawn.draw)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(marked_yaml, "write", lambda data: pytest.fail(f"no small change for {data!r}"))
+        patch.setattr(rewriting, "write", lambda data: pytest.fail(f"no small change for {data!r}"))
         assert same(data_of(rewrite(text, data)), data)
 
 
@@ -708,7 +707,7 @@ def test_long_keys_are_found_again() -> None:
 
 @pytest.mark.parametrize("wrong", ["a: 7\n", "a: [1", ""])
 def test_a_wrong_change_is_never_returned(monkeypatch: pytest.MonkeyPatch, wrong: str) -> None:
-    monkeypatch.setattr(marked_yaml._Rewriter, "apply", lambda self, data: wrong)
+    monkeypatch.setattr(rewriting._Rewriter, "apply", lambda self, data: wrong)
     assert rewrite("a: 1 # c\n", {"a": 2}) == "a: 2\n"
 
 

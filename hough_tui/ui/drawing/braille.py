@@ -15,6 +15,9 @@ from hough_tui.ui.drawing.viewport import Viewport
 Array = NDArray[np.float64]
 Dots = NDArray[np.int64]
 
+STILL = 1e-9
+"""Dots within which a way along an axis is none."""
+
 ACROSS, DOWN = 2, 4
 """Dots of a cell."""
 
@@ -88,10 +91,11 @@ class Canvas:
         x0, y0, x1, y1, length, begin, enter, leave = (
             part[seen] for part in (x0, y0, x1, y1, length, begin, enter, leave)
         )
-        counts = np.ceil(length * (leave - enter)).astype(np.int64) + 1
+        # One more than there are steps: less than a dot apart, they miss none to rounding.
+        counts = np.ceil(length * (leave - enter)).astype(np.int64) + 2
         segment = np.repeat(np.arange(len(counts)), counts)
         number = np.arange(len(segment)) - np.repeat(np.cumsum(counts) - counts, counts)
-        share = enter[segment] + (leave - enter)[segment] * (number / np.maximum(counts - 1, 1)[segment])
+        share = enter[segment] + (leave - enter)[segment] * (number / (counts - 1)[segment])
         along_x = x0[segment] + (x1 - x0)[segment] * share
         along_y = y0[segment] + (y1 - y0)[segment] * share
         layer_of = np.asarray(layers, np.int32)[path_of[starts[seen]]][segment]
@@ -177,7 +181,7 @@ def _clipped(x0: Array, y0: Array, x1: Array, y1: Array, width: float, height: f
     """
     enter, leave = np.zeros(len(x0)), np.ones(len(x0))
     for start, change, size in ((x0, x1 - x0, width), (y0, y1 - y0, height)):
-        still = change == 0.0
+        still = np.abs(change) < STILL
         divisor = np.where(still, 1.0, change)
         at_low, at_high = -start / divisor, (size - start) / divisor
         first, last = np.minimum(at_low, at_high), np.maximum(at_low, at_high)

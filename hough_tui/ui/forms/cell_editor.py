@@ -53,8 +53,7 @@ class CellEditor(Widget):
         self.asked: tuple[Any] | None = None
         self.step = 0
         self.is_wrong = False
-        self._input = input_for(column, text_of(column, value), placeholder)
-        self._input.add_class("cell--line")
+        self._input = input_for(column, text_of(column, value), placeholder, "cell--line")
 
     def compose(self) -> ComposeResult:
         yield self._input

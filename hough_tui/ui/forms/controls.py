@@ -56,10 +56,10 @@ class TextInput(Input):
         self.post_message(ExplanationWanted())
 
 
-def input_for(field: FieldDescription, text: str, placeholder: str = "") -> Input:
+def input_for(field: FieldDescription, text: str, placeholder: str, classes: str) -> Input:
     """Return the input in which a field is typed."""
     kind = NumberInput if field.is_numeric else TextInput
-    return kind(text, placeholder, compact=True, select_on_focus=field.is_numeric)
+    return kind(text, placeholder, compact=True, select_on_focus=field.is_numeric, classes=classes)
 
 
 class Flag(Widget, can_focus=True):
@@ -87,8 +87,8 @@ class Flag(Widget, can_focus=True):
     class Changed(Message):
         """Someone turned the flag."""
 
-    def __init__(self, value: bool) -> None:
-        super().__init__()
+    def __init__(self, value: bool, *, classes: str | None = None) -> None:
+        super().__init__(classes=classes)
         self.set_reactive(Flag.value, value)
 
     def render(self) -> Text:

@@ -216,14 +216,29 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
                 return field.show_problem(problem.message)
             if table is not None:
                 return table.show_problem(problem)
-        edited = self.field(next(iter(asked.typed))) if asked is not None and asked.typed else None
-        if edited is not None and edited.path[: len(problem.path)] == problem.path:
-            # What is wrong with the whole is wrong since this field was edited.
-            return edited.show_problem(problem.message)
+        edited = self._asking(asked)
+        if asked is not None and edited is not None and asked.path[: len(problem.path)] == problem.path:
+            # What is wrong with the whole is wrong since this was edited.
+            return self._mark(edited, asked.path, problem.message)
         inner = problem.path[len(self._path) :] if self._has(problem.path) else problem.path
         self._say(join(replace(problem, path=inner)))
-        if edited is not None:
-            edited.show_problem("this is not taken; the top of the form says why")
+        if asked is not None and edited is not None:
+            self._mark(edited, asked.path, "this is not taken; the top of the form says why")
+
+    def _asking(self, asked: Asked | None) -> ValueField | ListTable | None:
+        """Return the field or the table that asked for an edit."""
+        if asked is None:
+            return None
+        tables = (self.table(asked.path[:length]) for length in range(len(self._path) + 1, len(asked.path)))
+        typed = next(iter(asked.typed), None)
+        return self.field(typed) if typed is not None else next(filter(None, tables), None)
+
+    @staticmethod
+    def _mark(edited: ValueField | ListTable, path: Path, words: str) -> None:
+        if isinstance(edited, ValueField):
+            edited.show_problem(words)
+        else:
+            edited.show_problem(Problem(path, words))
 
     def _say(self, words: str | None) -> None:
         self._top.update(Content(f"! {words}" if words else ""))
@@ -271,7 +286,10 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
 
     def _made(self, field: FieldDescription) -> ValueField:
         inner = field.path[len(self._path) :]
-        widget = ValueField(field, value_in(self._model, inner), value_in(self._resolved, inner))
+        value, auto_value = value_in(self._model, inner), value_in(self._resolved, inner)
+        room = self.scrollable_content_region.width
+        width = (room // 2 if self.has_class("-wide") else room) if room else None
+        widget = ValueField(field, value, auto_value, width=width)
         self._fields[inner] = widget
         return widget
 

@@ -20,6 +20,8 @@ from hough_tui.ui.forms.texts import shown, text_of, value_of
 from hough_tui.ui.messages import FieldEdited, FieldUnreadable
 from hough_tui.ui.screens.explanation import ExplanationScreen
 
+CONTROL = "field--control"
+
 ROOMY, STACKED = 56, 40
 """Widths from which what is worked out stands beside, and below which the label stands above."""
 
@@ -35,6 +37,7 @@ class ValueField(Widget):
     field : what the field is
     value : what it holds
     auto_value : what `auto`, or nothing, is worked out to
+    width : how wide it is going to be, if that is known: it need not be styled twice then
     """
 
     DEFAULT_CSS = """
@@ -71,20 +74,26 @@ class ValueField(Widget):
         Binding("escape", "revert", "Put back", show=False, id="field.revert"),
     ]
 
-    def __init__(self, field: FieldDescription, value: Any, auto_value: Any = None) -> None:
-        super().__init__()
+    def __init__(
+        self, field: FieldDescription, value: Any, auto_value: Any = None, *, width: int | None = None
+    ) -> None:
         self.field = field
         self._value = value
         self._auto = auto_value
         self._meaning: Any = value
         self._posted: list[Any] = []
         self._problem: str | None = None
+        self._said = (self._worked_out(), "")
+        self._has_note = field.kind not in (Kind.TEXT, Kind.TEXTS, Kind.MAPPING)
+        # A class that is there from the beginning costs nothing; one that is set later styles all anew.
+        classes = {"-long": not self._has_note, "-noted": bool(self._said[0])}
+        if width is not None:
+            classes |= {"-roomy": width >= ROOMY, "-stacked": width < STACKED}
+        super().__init__(classes=" ".join(name for name, is_set in classes.items() if is_set))
         self._label = Static(field.title, classes="field--label", markup=False)
         self._control = self._made_control()
-        self._note = Static("", classes="field--note", markup=False)
+        self._note = Static(self._said[0], classes="field--note", markup=False)
         self._message = Static("", classes="field--message", markup=False)
-        self.set_class(not self._has_note, "-long")
-        self._control.add_class("field--control")
 
     @property
     def path(self) -> Path:
@@ -116,10 +125,6 @@ class ValueField(Widget):
         meaning = self._meaning
         return meaning.message if isinstance(meaning, Unreadable) else self._problem
 
-    @property
-    def _has_note(self) -> bool:
-        return self.field.kind not in (Kind.TEXT, Kind.TEXTS, Kind.MAPPING)
-
     def compose(self) -> ComposeResult:
         self._label.tooltip = Content(self.field.help)
         yield self._label
@@ -127,7 +132,6 @@ class ValueField(Widget):
         if self._has_note:
             yield self._note
         yield self._message
-        self._show_note()
 
     def on_resize(self, event: Resize) -> None:
         self.set_class(event.size.width >= ROOMY, "-roomy")
@@ -136,7 +140,7 @@ class ValueField(Widget):
     def show_problem(self, message: str | None) -> None:
         """Say beside the field what is wrong with its value; None takes it away."""
         self._problem = message
-        self._show_message()
+        self._show()
 
     def refresh_value(self, value: Any, auto_value: Any = None) -> None:
         """Show a value that was set outside; nothing is posted.
@@ -155,8 +159,7 @@ class ValueField(Widget):
             self._meaning = value
         if self.meaning == value:
             self._meaning, self._problem = value, None
-        self._show_note()
-        self._show_message()
+        self._show()
 
     def redescribe(self, field: FieldDescription) -> None:
         """Show another unit: everything else about the field stays."""
@@ -171,8 +174,7 @@ class ValueField(Widget):
         self._posted.clear()
         if self.text != text_of(field, value):
             self._put(value)
-        self._show_note()
-        self._show_message()
+        self._show()
 
     def action_explain(self) -> None:
         """Explain the field."""
@@ -210,8 +212,7 @@ class ValueField(Widget):
         else:
             self._posted.append(meaning)
             self.post_message(FieldEdited(self.path, meaning))
-        self._show_note()
-        self._show_message()
+        self._show()
 
     def _put(self, value: Any) -> None:
         """Show a value in the control without a word."""
@@ -228,16 +229,19 @@ class ValueField(Widget):
         text = text_of(self.field, self._value)
         match self.field.kind:
             case Kind.FLAG:
-                return Flag(bool(self._value))
+                return Flag(bool(self._value), classes=CONTROL)
             case Kind.CHOICE if self.field.is_constant:
-                return Static(text, classes="field--constant", markup=False)
+                return Static(text, classes=f"field--constant {CONTROL}", markup=False)
             case Kind.CHOICE:
-                options = [(Content(choice), choice) for choice in self.field.choices]
-                chosen = text if text else Select.NULL
                 return Select(
-                    options, allow_blank=self.field.optional, value=chosen, prompt="none", compact=True
+                    [(Content(choice), choice) for choice in self.field.choices],
+                    value=text if text else Select.NULL,
+                    allow_blank=self.field.optional,
+                    prompt="none",
+                    compact=True,
+                    classes=CONTROL,
                 )
-        return input_for(self.field, text, "none" if self.field.optional else "")
+        return input_for(self.field, text, "none" if self.field.optional else "", CONTROL)
 
     def _worked_out(self) -> str:
         """Return what `auto`, or nothing, comes to; empty where the field says it itself."""
@@ -246,13 +250,14 @@ class ValueField(Widget):
         unit = f" {self.field.unit}" if self.field.unit else ""
         return f"{self._meaning or 'worked out'}: {shown(self._auto)}{unit}"
 
-    def _show_note(self) -> None:
-        note = self._worked_out()
+    def _show(self) -> None:
+        """Show what is worked out and what is wrong, where either has changed."""
+        said = self._worked_out(), self.problem or ""
+        if said == self._said:
+            return
+        self._said = (note, problem) = said
         self._note.update(Content(note))
         self.set_class(bool(note), "-noted")
-
-    def _show_message(self) -> None:
-        problem = self.problem
         self._message.update(Content(f"! {problem}" if problem else ""))
         self._message.display = bool(problem)
         self._control.set_class(bool(problem), "-wrong")

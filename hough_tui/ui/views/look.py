@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 DEBOUNCE = 0.06
 """Seconds without a further change before a trial is worked out anew."""
 
-WIDE, VERY_WIDE = 110, 150
+WIDE, VERY_WIDE = 88, 150
 
 
 class LookView(Widget):

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 from algorithms.errors import RequestError
@@ -23,6 +26,10 @@ SHARE = 0.1
 
 KEPT_ON_LEAVING = 4 * 2**20
 """Bytes of per-trial columns that can be kept while the user waits for the application to end."""
+
+
+NICENESS = 5
+"""How much the engine's threads give way to others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +127,7 @@ class Running:
             self._job = Job(plan)
             if self._stopped.is_set():  # it was set before there was a job to cancel
                 self._job.cancel()
+            _give_way()
             live = LiveRun(self._job)
             self._tell(Started(live))
             self._fill(live)
@@ -149,6 +157,16 @@ class Running:
         elif self._is_leaving and job.progress.done.any() and _is_small(live):
             kept_as, problem = keep(live)
         return Ended(live.rows, job.seconds, job.is_complete, kept_as, problem)
+
+
+def _give_way() -> None:
+    """Put the engine's threads behind the one of the screen, which else waits its turn among them."""
+    if sys.platform != "linux":  # elsewhere threads have no priority of their own that could be set so
+        return
+    for thread in threading.enumerate():
+        if thread.name.startswith("chunks") and thread.native_id is not None:
+            with suppress(OSError):  # it may have come to its end
+                os.setpriority(os.PRIO_PROCESS, thread.native_id, NICENESS)
 
 
 def keep(live: LiveRun) -> tuple[str | None, str | None]:

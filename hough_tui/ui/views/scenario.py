@@ -25,7 +25,7 @@ from scenarios.model import Scenario, ScenarioSet
 DEBOUNCE = 0.06
 """Seconds without a further change before the picture is drawn anew."""
 
-WIDE = 100
+WIDE = 88
 """Columns from which form and picture stand side by side."""
 
 

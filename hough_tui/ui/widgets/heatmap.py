@@ -285,7 +285,7 @@ def _key(scene: HeatmapScene) -> tuple[float, ...]:
 
 
 def _cells(rows: Sampling, columns: Sampling, given: NDArray[np.int64]) -> list[tuple[int, int, int, int]]:
-    """Return first and last row and first and last column of the screen cells that show cells, those in view."""
+    """Return first and last row, first and last column of the screen cells that show cells in view."""
     tops, bottoms = rows.where(given[:, 0])
     lefts, rights = columns.where(given[:, 1])
     seen = (tops < bottoms) & (lefts < rights)

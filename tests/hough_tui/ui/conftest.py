@@ -1,0 +1,165 @@
+"""The application without a terminal, and a user who drives it as people do."""
+
+import asyncio
+import time
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from rich.segment import Segment
+from textual.css.query import NoMatches
+from textual.pilot import Pilot
+from textual.widget import Widget
+from textual.widgets import Input, TabbedContent
+
+from hough_tui.ui.app import HoughApp
+from hough_tui.ui.config import Config
+from hough_tui.ui.forms.model_form import ModelForm
+from hough_tui.ui.forms.value_field import ValueField
+
+PATIENCE = 60.0
+"""Seconds until a wait is given up: kernels may have to be compiled on a busy machine."""
+
+Path_ = tuple[str | int, ...]
+Condition = Callable[[], Any]
+
+
+class User:
+    """Someone at the keyboard and the mouse."""
+
+    def __init__(self, app: HoughApp, pilot: Pilot[None]) -> None:
+        self.app, self.pilot = app, pilot
+
+    async def until(self, condition: Condition, patience: float = PATIENCE) -> Any:
+        """Wait until something holds, and return it; what is not there yet does not hold."""
+        limit = time.monotonic() + patience
+        while True:
+            try:
+                if found := condition():
+                    return found
+            except (NoMatches, AttributeError, IndexError):
+                pass
+            if time.monotonic() > limit:
+                raise AssertionError(f"in vain, before this screen:\n{self.text}")
+            await self.pilot.pause(0.02)
+
+    async def sees(self, *words: str) -> None:
+        """Wait until words are on the screen."""
+        await self.until(lambda: all(word in self.text for word in words))
+
+    async def screen(self, name: str) -> None:
+        """Wait until a screen lies on top."""
+        await self.until(lambda: type(self.app.screen).__name__ == name)
+        await self.pilot.pause()
+
+    async def press(self, *keys: str) -> None:
+        await self.pilot.press(*keys)
+        await self.pilot.pause()
+
+    async def type(self, text: str) -> None:
+        """Type text, character by character."""
+        await self.press(*(text.replace("\n", "")))
+
+    async def go(self, key: str) -> Any:
+        """Go to a view by its key, and return it when it is ready."""
+        await self.press(key)
+        await self.until(lambda: self.tab in self.app.screen._views)
+        await self.pilot.pause()
+        return self.view
+
+    async def warm(self) -> None:
+        """Wait until a set is open and what the application prepares behind it is done."""
+        await self.until(lambda: self.app.workspace)
+        await self.until(lambda: not [worker for worker in self.app.workers if worker.is_running])
+        await self.until(lambda: self.app.screen_stack[0].query("SetTree"))
+        await self.pilot.pause()
+
+    @property
+    def main(self) -> Any:
+        return self.app.screen_stack[0]
+
+    @property
+    def tab(self) -> str:
+        return self.main.query_one("#tabs", TabbedContent).active
+
+    @property
+    def view(self) -> Any:
+        return self.main._views[self.tab]
+
+    @property
+    def form(self) -> ModelForm:
+        return self.view.query_one(ModelForm)
+
+    def field(self, *path: str | int) -> ValueField:
+        found = self.form.field(path)
+        assert found is not None, path
+        return found
+
+    async def fill(self, path: Path_, text: str) -> ValueField:
+        """Type text into a field of the form that is seen, in place of what is there."""
+        self.form.focus_field(path)
+        line = self.field(*path).query_one(Input)
+        await self.until(lambda: line.has_focus)
+        await self.press("home", "shift+end", "delete")
+        await self.type(text)
+        assert line.value == text
+        return self.field(*path)
+
+    def value(self, *path: str | int) -> Any:
+        """Return what stands in the set."""
+        assert self.app.workspace is not None
+        return self.app.workspace.value(path)
+
+    @property
+    def text(self) -> str:
+        """What is on the screen."""
+        return "\n".join(line.text for line in self.app.screen._compositor.render_strips())
+
+    def drawn(self, widget: Widget) -> list[list[Segment]]:
+        """Return what is on the screen at the place of a widget, with its colours."""
+        place = widget.region
+        lines = self.app.screen._compositor.render_strips()[place.y : place.bottom]
+        return [list(line.crop(place.x, place.right).simplify()) for line in lines]
+
+    @property
+    def notes(self) -> list[str]:
+        """What the application has told in passing."""
+        return [note.message for note in self.app._notifications]
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An account of a user who has never used the application; the process works in it."""
+    for name in ("data", "config", "state"):
+        monkeypatch.setenv(f"XDG_{name.upper()}_HOME", str(tmp_path / name))
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    work = tmp_path / "work"
+    work.mkdir()
+    monkeypatch.chdir(work)
+    return tmp_path
+
+
+@pytest.fixture
+def drive(home: Path) -> Callable[..., HoughApp]:
+    """Return a function that opens the application, lets a user go through a journey, and returns it."""
+
+    def run(
+        journey: Callable[[User], Awaitable[None]],
+        set_name: str | None = None,
+        *,
+        size: tuple[int, int] = (120, 40),
+        config: Config | None = None,
+    ) -> HoughApp:
+        async def work() -> HoughApp:
+            app = HoughApp(set_name, config or Config())
+            async with app.run_test(size=size, notifications=True) as pilot:
+                user = User(app, pilot)
+                if set_name is not None:
+                    await user.warm()
+                await journey(user)
+            return app
+
+        return asyncio.run(work())
+
+    return run

@@ -1,0 +1,325 @@
+import asyncio
+from collections.abc import Awaitable, Callable
+
+from textual.app import App, ComposeResult
+from textual.coordinate import Coordinate
+from textual.pilot import Pilot
+from textual.widgets import Button, Input
+
+from algorithms.parameters import FieldError, Path
+from hough_tui.ui.forms.cell_table import CellTable
+from hough_tui.ui.forms.list_table import ListTable
+from hough_tui.ui.forms.model_form import ModelForm
+from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited, FieldUnreadable
+from hough_tui.ui.screens.explanation import ExplanationScreen
+from hough_tui.ui.workspace import Workspace
+from scenarios.files import load_set
+
+TARGETS, CLUTTER = ("scenarios", 0, "targets"), ("scenarios", 0, "clutter")
+X, Y, VX, VY, BIRTH, DEATH, SPEED = range(1, 8)
+"""The columns of the table of targets, after the name."""
+
+
+class TableApp(App[None]):
+    """A scenario's form on a real set."""
+
+    AUTO_FOCUS = None
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.workspace = Workspace(load_set("course-report"), None)
+        self.form = ModelForm()
+        self.posted: list[str] = []
+        self.unreadable: list[str] = []
+
+    def compose(self) -> ComposeResult:
+        yield self.form
+
+    def on_mount(self) -> None:
+        self.show()
+
+    def show(self) -> None:
+        self.form.load(self.workspace.value(("scenarios", 0)), ("scenarios", 0))
+
+    def answer(self, action: Callable[..., None], *arguments: object) -> None:
+        self.posted.append(action.__name__)
+        try:
+            action(*arguments)
+        except FieldError as error:
+            self.form.problems([error.problem])
+        else:
+            self.show()
+
+    def on_field_edited(self, event: FieldEdited) -> None:
+        self.answer(self.workspace.set, event.path, event.value)
+
+    def on_field_unreadable(self, event: FieldUnreadable) -> None:
+        self.unreadable.append(event.message)
+
+    def on_element_added(self, event: ElementAdded) -> None:
+        self.answer(self.workspace.insert, event.path, event.value)
+
+    def on_element_removed(self, event: ElementRemoved) -> None:
+        self.answer(self.workspace.remove, event.path)
+
+
+def drive(journey: Callable[[TableApp, Pilot[None]], Awaitable[None]]) -> TableApp:
+    async def run() -> TableApp:
+        app = TableApp()
+        async with app.run_test(size=(100, 50)) as pilot:
+            await pilot.pause()
+            await journey(app, pilot)
+        return app
+
+    return asyncio.run(run())
+
+
+async def at(app: TableApp, pilot: Pilot[None], path: Path, row: int, column: int) -> ListTable:
+    """Put the cursor on a cell."""
+    table = app.form.table(path)
+    assert table is not None
+    table.query_one(CellTable).focus()
+    table.query_one(CellTable).move_cursor(row=row, column=column)
+    await pilot.pause()
+    return table
+
+
+async def edit(pilot: Pilot[None], text: str, *after: str) -> None:
+    await pilot.press("enter", "home", "ctrl+k", *text, *after)
+    await pilot.pause()
+
+
+def message(table: ListTable) -> str:
+    return str(table.query_one(".list--message").visual)
+
+
+def rows(table: ListTable) -> list[list[str]]:
+    cells = table.query_one(CellTable)
+    return [[text.plain for text in cells.get_row_at(row)] for row in range(cells.row_count)]
+
+
+def test_targets_are_shown_with_speed_and_heading():
+    async def journey(app, pilot):
+        table = app.form.table(TARGETS)
+        assert rows(table)[0] == ["rising", "40", "20", "0.3", "0.18", "0", "", "0.350", "59.0"]
+        assert rows(table)[1][-1] == "121.0"
+
+    assert drive(journey).posted == []
+
+
+def test_a_cell_is_edited_in_its_place():
+    async def journey(app, pilot):
+        table = await at(app, pilot, TARGETS, 1, VY)
+        await edit(pilot, "-0,2", "enter")
+        assert app.workspace.value((*TARGETS, 1, "velocity")) == (0.3, -0.2)
+        assert rows(table)[1][VY] == "-0.2"
+        assert not table.query(Input)
+        assert table.query_one(CellTable).has_focus
+
+    assert drive(journey).posted == ["set"]
+
+
+def test_tab_takes_the_value_and_goes_to_the_next_cell():
+    async def journey(app, pilot):
+        table = await at(app, pilot, TARGETS, 0, X)
+        await edit(pilot, "41", "tab")
+        await edit(pilot, "21", "tab")
+        assert app.workspace.value((*TARGETS, 0, "position")) == (41.0, 21.0)
+        assert table.query_one(CellTable).cursor_coordinate == (0, VX)
+
+    drive(journey)
+
+
+def test_a_wrong_cell_stays_open_with_what_is_wrong():
+    async def journey(app, pilot):
+        table = await at(app, pilot, TARGETS, 0, BIRTH)
+        await edit(pilot, "1.5", "enter")
+        assert message(table) == "! '1.5' is given; it must be a whole number"
+        assert app.unreadable == ["'1.5' is given; it must be a whole number"]
+        assert not app.form.is_sound
+        await pilot.press("home", "ctrl+k", "-", "1", "enter")
+        await pilot.pause()
+        assert message(table) == "! -1 is given; it must be at least 0"
+        assert table.query_one(Input).value == "-1"
+        await pilot.press("escape")
+        await pilot.pause()
+        assert not table.query(Input)
+        assert message(table) == ""
+        assert app.form.is_sound
+
+    app = drive(journey)
+    assert app.workspace.value((*TARGETS, 0, "birth")) == 0
+    assert not app.workspace.is_changed
+
+
+def test_a_wrong_thousand_is_never_taken_for_another_number():
+    async def journey(app, pilot):
+        table = await at(app, pilot, TARGETS, 0, X)
+        await edit(pilot, "1,000", "enter")
+        assert "may mean 1.000 or 1000" in message(table)
+
+    assert drive(journey).posted == []
+
+
+def test_leaving_a_cell_by_the_mouse_takes_what_is_typed():
+    async def journey(app, pilot):
+        table = await at(app, pilot, TARGETS, 0, X)
+        await edit(pilot, "42")
+        app.form.focus_field(("scenarios", 0, "interval"))
+        await pilot.pause()
+        assert app.workspace.value((*TARGETS, 0, "position", 0)) == 42.0
+        assert not table.query(Input)
+        assert not table.query_one(CellTable).has_focus
+
+    drive(journey)
+
+
+def test_a_change_from_elsewhere_is_shown_and_leaves_an_open_cell_alone():
+    async def journey(app, pilot):
+        table = await at(app, pilot, TARGETS, 0, X)
+        await edit(pilot, "42")
+        app.workspace.set((*TARGETS, 1, "velocity", 0), 0.5)
+        app.show()
+        await pilot.pause()
+        assert rows(table)[1][VX] == "0.5"
+        assert table.query_one(Input).value == "42"
+        await pilot.press("enter")
+        await pilot.pause()
+        app.workspace.undo()
+        app.show()
+        await pilot.pause()
+        assert rows(table)[0][X] == "40"
+
+    assert drive(journey).posted == ["set"]
+
+
+def test_elements_are_added_duplicated_and_removed_by_keys():
+    async def journey(app, pilot):
+        table = await at(app, pilot, TARGETS, 0, 0)
+        await pilot.press("a")
+        await pilot.pause()
+        targets = app.workspace.value(TARGETS)
+        assert [target.name for target in targets] == ["rising", None, "falling"]
+        assert targets[1].position == (50.0, 50.0)
+        assert not targets[1].stands_still
+        assert table.query_one(CellTable).cursor_row == 1
+        await pilot.press("k", "c")
+        await pilot.pause()
+        assert [target.name for target in app.workspace.value(TARGETS)][:2] == ["rising", "rising-2"]
+        await pilot.press("d")
+        await pilot.pause()
+        await pilot.press("delete")
+        await pilot.pause()
+        assert [row[0] for row in rows(table)] == ["rising", "falling"]
+
+    assert drive(journey).posted == ["insert", "insert", "remove", "remove"]
+
+
+def test_the_last_element_may_go_and_the_first_may_come():
+    async def journey(app, pilot):
+        table = await at(app, pilot, CLUTTER, 0, 0)
+        await pilot.press("d")
+        await pilot.pause()
+        assert app.workspace.value(CLUTTER) == []
+        assert table.query_one(".list--empty").display
+        await pilot.press("a")
+        await pilot.pause()
+        assert [source.rate for source in app.workspace.value(CLUTTER)] == [1.0]
+        assert not table.query_one(".list--empty").display
+
+    drive(journey)
+
+
+def test_a_cell_that_spoils_something_elsewhere_stays_open():
+    async def journey(app, pilot):
+        table = await at(app, pilot, TARGETS, 0, VX)
+        await edit(pilot, "0", "tab")
+        await edit(pilot, "0", "enter")
+        problem = app.form.query_one(".form--problem")
+        assert "stands still" in str(problem.visual)
+        # The cell is not in effect, and it says so itself.
+        assert table.query_one(Input).value == "0"
+        assert message(table) == "! this is not taken; the top of the form says why"
+        assert not app.form.is_sound
+
+    drive(journey)
+
+
+def test_the_mouse_edits_and_presses():
+    async def journey(app, pilot):
+        table = app.form.table(TARGETS)
+        cells = table.query_one(CellTable)
+        region = cells.cell_region(Coordinate(1, X))
+        for _ in range(2):
+            await pilot.click(cells, offset=(region.x + 2, region.y))
+            await pilot.pause()
+        assert table.query_one(Input).has_focus
+        await pilot.press("7", "enter")
+        await pilot.pause()
+        assert app.workspace.value((*TARGETS, 1, "position")) == (7.0, 80.0)
+        add, copy, remove = table.query(Button)
+        for button in (copy, add, remove):
+            await pilot.click(button)
+            await pilot.pause()
+        assert [target.name for target in app.workspace.value(TARGETS)] == ["rising", "falling", "falling-2"]
+
+    assert drive(journey).posted == ["set", "insert", "insert", "remove"]
+
+
+def test_an_empty_region_of_clutter_shows_and_begins_as_that_of_the_scenario():
+    async def journey(app, pilot):
+        table = await at(app, pilot, CLUTTER, 0, 1)
+        assert rows(table)[0] == ["50", "0, 100", "0, 100"]
+        await edit(pilot, "10 20", "enter")
+        region = app.workspace.value((*CLUTTER, 0, "region"))
+        assert (region.x, region.y) == ((10.0, 20.0), (0.0, 100.0))
+        await edit(pilot, "", "enter")
+        assert app.workspace.value((*CLUTTER, 0, "region")) is None
+
+    drive(journey)
+
+
+def test_what_is_worked_out_is_not_edited():
+    async def journey(app, pilot):
+        table = await at(app, pilot, TARGETS, 0, SPEED)
+        await pilot.press("enter")
+        await pilot.pause()
+        assert not table.query(Input)
+        assert "worked out" in message(table)
+
+    drive(journey)
+
+
+def test_a_question_mark_explains_the_cell():
+    async def journey(app, pilot):
+        await at(app, pilot, TARGETS, 0, VX)
+        for keys in (["?"], ["enter", "?"]):
+            await pilot.press(*keys)
+            await pilot.pause()
+            assert isinstance(app.screen, ExplanationScreen)
+            assert app.screen.field.title == "vx [km/s]"
+            await pilot.press("escape")
+            await pilot.pause()
+        assert app.form.table(TARGETS).query_one(Input).value == "0.3"
+
+    assert drive(journey).posted == []
+
+
+def test_vim_keys_move_the_cursor():
+    async def journey(app, pilot):
+        table = (await at(app, pilot, TARGETS, 0, 0)).query_one(CellTable)
+        await pilot.press("j", "l", "l", "h")
+        assert table.cursor_coordinate == (1, 1)
+        await pilot.press("g")
+        assert table.cursor_row == 0
+        await pilot.press("G")
+        assert table.cursor_row == 1
+
+    drive(journey)
+
+
+def test_every_binding_has_an_id_and_a_description():
+    for widget in (ListTable, CellTable, ModelForm, ExplanationScreen):
+        for binding in widget.BINDINGS:
+            assert binding.id
+            assert binding.description
