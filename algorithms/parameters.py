@@ -86,7 +86,16 @@ def parameter(
 class Declared(BaseModel):
     """A model whose fields are declared parameters: frozen, and closed to unknown names."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=False)
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    @classmethod
+    def is_meant(cls, data: Mapping[str, Any]) -> bool:
+        """Return whether data are meant for this one of several models: its literals are those of the data."""
+        return all(
+            data[name] in typing.get_args(field.annotation)
+            for name, field in cls.model_fields.items()
+            if typing.get_origin(field.annotation) is Literal and name in data
+        )
 
 
 class Parameters(Declared):
@@ -314,7 +323,13 @@ def replaced(model: Model, path: Path, value: Any) -> Model:
 
 def fields_at(model: type[BaseModel], data: Any, path: Path) -> list[str]:
     """Return the names that a mapping at a place of the data may have."""
-    return list(dict.fromkeys(name for found in _models_at(model, data, path) for name in found.model_fields))
+    return list(
+        dict.fromkeys(
+            field.alias or name
+            for found in _models_at(model, data, path)
+            for name, field in found.model_fields.items()
+        )
+    )
 
 
 def field_at(model: type[BaseModel], path: Path) -> FieldInfo | None:
@@ -353,18 +368,10 @@ def _models_at(model: type[BaseModel], data: Any, path: Path) -> list[type[BaseM
         except (KeyError, IndexError, TypeError):
             here = None
     models = [found for found in candidates if isinstance(found, type) and issubclass(found, BaseModel)]
-    return [found for found in models if _is_chosen(found, here)] or models
-
-
-def _is_chosen(model: type[BaseModel], data: Any) -> bool:
-    """Return whether the literal fields of an alternative of a union are those of the data."""
-    if not isinstance(data, Mapping):
-        return True
-    for name, field in model.model_fields.items():
-        if typing.get_origin(field.annotation) is Literal and name in data:
-            if data[name] not in typing.get_args(field.annotation):
-                return False
-    return True
+    if not isinstance(here, Mapping):
+        return models
+    meant = [found for found in models if not issubclass(found, Declared) or found.is_meant(here)]
+    return meant or models
 
 
 def _alternatives(annotation: Any) -> Iterator[Any]:

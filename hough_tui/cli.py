@@ -22,7 +22,6 @@ WRONG_REQUEST, FAILED, INTERRUPTED = 2, 1, 130
 
 app = typer.Typer(
     name="hough-tui",
-    help="Design and judge track initiation, above all by the Hough transform.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -86,6 +85,11 @@ def stop(message: str, status: int) -> None:
     """Say on standard error why the command ends, and end it."""
     tell(message)
     raise typer.Exit(status)
+
+
+def counted(number: int, what: str) -> str:
+    """Return a number of things, in words."""
+    return f"{number:,} {what}" + ("" if number == 1 else "s")
 
 
 def tell(message: str) -> None:
@@ -173,6 +177,7 @@ def batch(
     ] = True,
 ) -> None:
     """Run the experiments of scenario sets and print their rates."""
+    refuse(plot and str(csv) == "-", "--csv - prints the rows and nothing else: leave out --plot")
     refuse(
         as_json and (plot or str(csv) == "-"),
         "--json prints one document and nothing else: leave out --plot and --csv -",
@@ -205,7 +210,7 @@ def batch(
         replace_file(csv, csv_text(run.document["rows"]))
     seconds = job.seconds
     tell(
-        f"{len(plan.cells)} cells, {plan.trials:,} trials in {seconds:.1f} s, "
+        f"{counted(len(plan.cells), 'cell')}, {counted(plan.trials, 'trial')} in {seconds:.1f} s, "
         f"{plan.trials / seconds:,.0f} a second"
     )
     if status:
@@ -299,7 +304,7 @@ def initiate(
     text = read_text(plots)
     spacing = interval if interval is not None else base and base.interval
     recording = parse_plots(text, str(plots), interval=spacing, scans=window(scans))
-    context, assumed = initiation.context_of(recording, known, base)
+    context, assumed = initiation.context_of(recording, known, base, window(scans))
     found = initiation.initiate(recording, algorithm, parameters, context, assumed, most)
     if accumulator is not None:
         refuse(found.accumulator is None, f"--accumulator: {name} has no accumulator")
@@ -443,15 +448,19 @@ def initiators(
     if as_json:
         sys.stdout.write(json_text(told[0] if name else told))
     elif name:
-        entries = [
-            (found["name"], f"{found['help']} ({found['allowed']}; default {found['default']})")
-            for found in told[0]["parameters"]
-        ]
+        entries = [(found["name"], described(found)) for found in told[0]["parameters"]]
         title = f"{name}: {told[0]['summary']}"
         print_renderables(listing(title, entries, output_width(), ("parameter", "what it is")))
     else:
         entries = [(found["name"], found["summary"]) for found in told]
         print_renderables(listing("initiators", entries, output_width()))
+
+
+def described(declared: dict[str, Any]) -> str:
+    """Return what a parameter is, what it may be, and what it is where nothing is given."""
+    default = "none" if declared["default"] is None else declared["default"]
+    text = f"{declared['help']} ({declared['allowed']}; default {default})"
+    return f"{text}; auto: {declared['auto']}" if declared["auto"] else text
 
 
 @app.command()
@@ -470,10 +479,12 @@ def validate(
         except RequestError as error:
             wrong.append(str(error))
         else:
-            counts = (
-                f"{len(found.scenarios)} scenarios, {len(found.initiators)} initiators, "
-                f"{len(found.experiments)} experiments"
-            )
+            parts = {
+                "scenario": found.scenarios,
+                "initiator": found.initiators,
+                "experiment": found.experiments,
+            }
+            counts = ", ".join(counted(len(listed), part) for part, listed in parts.items())
             print(f"{name}: valid: {counts}")
     if wrong:
         raise RequestError("\n".join(wrong))
@@ -549,7 +560,11 @@ def options(
         bool, typer.Option("--version", help="Print the version.", callback=print_version, is_eager=True)
     ] = False,
 ) -> None:
-    """Design and judge track initiation, above all by the Hough transform."""
+    """Design and judge track initiation, above all by the Hough transform.
+
+    Without a command the application opens; with the name of a scenario set in place of one, it opens on
+    that set.
+    """
 
 
 @app.command("open", hidden=True)
@@ -566,7 +581,7 @@ def open_application(
     if name is not None and name not in bundled_paths() and not Path(name).exists():
         from algorithms.parameters import unknown
 
-        known = [*bundled_paths(), *commands()]
+        known = [*bundled_paths(), *(command for command in commands() if command != "open")]
         refuse(True, unknown(name, known, "file, bundled set or command"))
     require_terminal()
     from hough_tui.ui.app import run

@@ -5,10 +5,15 @@ an instance of `Initiator` or a class of it. With `initiate` alone its trials ru
 processes; as a `ChunkInitiator` in compiled code its chunks run in threads.
 """
 
+from algorithms.association import associate, with_states
 from algorithms.compiled import kernel
 from algorithms.context import Box, Context, Unit
 from algorithms.errors import RequestError
+from algorithms.hough.grid import Grid, GridParameters
 from algorithms.hough.lines import line_through, normal_form
+from algorithms.hough.search import Extraction, PeakSearch
+from algorithms.hough.voting import Accumulator, accumulate
+from algorithms.initiators.accumulating import AccumulatingInitiator, AccumulatingParameters
 from algorithms.initiators.base import ChunkInitiator, Initiator
 from algorithms.parameters import (
     Auto,
@@ -26,17 +31,24 @@ from algorithms.plots import PlotChunk, Plots
 from algorithms.tracks import TrackChunk, Tracks
 
 __all__ = [
+    "AccumulatingInitiator",
+    "AccumulatingParameters",
+    "Accumulator",
     "Auto",
     "Box",
     "ChunkInitiator",
     "Context",
     "Count",
     "Dimension",
+    "Extraction",
     "Fraction",
+    "Grid",
+    "GridParameters",
     "Initiator",
     "NotNegative",
     "Number",
     "Parameters",
+    "PeakSearch",
     "PlotChunk",
     "Plots",
     "Positive",
@@ -45,8 +57,11 @@ __all__ = [
     "Tracks",
     "Unit",
     "Whole",
+    "accumulate",
+    "associate",
     "kernel",
     "line_through",
     "normal_form",
     "parameter",
+    "with_states",
 ]

@@ -162,6 +162,11 @@ class InitiatorEntry(Declared):
     name: Name = parameter(help="what it is called in the set; the initiator's own name where that is enough")
     initiator: str = parameter(help="which initiator it is")
 
+    @classmethod
+    def is_meant(cls, data: Mapping[str, Any]) -> bool:
+        """Return whether data name this initiator, by `initiator` or else by `name`."""
+        return bool(_which(data) == cls.model_fields["initiator"].default)
+
     @property
     def algorithm(self) -> Initiator:
         """The initiator itself."""
@@ -187,6 +192,15 @@ def entry_model(declared: Initiator) -> type[InitiatorEntry]:
             f"{declared.name.title().replace('-', '')}Entry",
             __base__=bases,
             __doc__=declared.summary,
+            # Without `initiator` the name says which it is; a schema has no other way to tell that.
+            __cls_kwargs__={
+                "json_schema_extra": {
+                    "anyOf": [
+                        {"required": ["initiator"]},
+                        {"properties": {"name": {"const": declared.name}}},
+                    ]
+                }
+            },
             initiator=(kind, parameter(declared.name, help="which initiator it is")),
         ),
     )

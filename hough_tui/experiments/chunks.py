@@ -16,8 +16,8 @@ from algorithms.tracks import TrackChunk
 from hough_tui.experiments.plan import Plan, SharedDraws, SharedTracks
 from scenarios.simulate import Draw, World, draw, truth
 
-PlainInitiation = Callable[[SharedDraws, SharedTracks, PlotChunk], TrackChunk]
-"""How the trials of an initiator in plain Python are run."""
+PlainInitiation = Callable[[SharedDraws, SharedTracks, PlotChunk], tuple[TrackChunk, float]]
+"""How the trials of an initiator in plain Python are run: elsewhere, in so many seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,13 +56,11 @@ def run_chunk(
     drawing = time.thread_time() - began
     control: Draw | None = None
     for run in shared.runs:
-        began = time.thread_time()
-        tracks = _tracks(plan, shared, run, drawn.chunk, plain)
-        finding = time.thread_time() - began
+        tracks, finding = _tracks(plan, shared, run, drawn.chunk, plain)
         controlled = [cell for cell in run.cells if plan.cells[cell].experiment.control]
         if controlled:
             control = control or drawn.without_targets()
-            control_tracks = _tracks(plan, shared, run, control.chunk, plain)
+            control_tracks, _ = _tracks(plan, shared, run, control.chunk, plain)
         for cell in run.cells:
             began = time.thread_time()
             scores = _scores(plan, cell, shared, tracks, drawn)
@@ -81,12 +79,13 @@ def _scores(plan: Plan, cell: int, shared: SharedDraws, tracks: TrackChunk, draw
 
 def _tracks(
     plan: Plan, shared: SharedDraws, run: SharedTracks, chunk: PlotChunk, plain: PlainInitiation
-) -> TrackChunk:
-    """Return the tracks of a chunk, with their plots where a criterion asks for them."""
+) -> tuple[TrackChunk, float]:
+    """Return the tracks of a chunk, with their plots where a criterion asks for them, and the seconds."""
     algorithm, context = run.entry.algorithm, shared.scenario.context
     if not isinstance(algorithm, ChunkInitiator):
         return plain(shared, run, chunk)
+    began = time.thread_time()
     tracks = algorithm.initiate_chunk(chunk, context, run.parameters)
     if any(plan.cells[cell].criterion.plots is not None for cell in run.cells):
         tracks = algorithm.associate_chunk(chunk, tracks, context, run.parameters)
-    return tracks
+    return tracks, time.thread_time() - began

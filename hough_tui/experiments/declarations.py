@@ -7,6 +7,16 @@ from typing import Any
 from pydantic import BaseModel
 
 from algorithms.initiators.base import Initiator
+from algorithms.parameters import LARGEST_WHOLE
+
+TYPES = {
+    "number": "number",
+    "integer": "whole number",
+    "null": "none",
+    "string": "text",
+    "boolean": "true, false",
+}
+BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
 
 
 def declaration(algorithm: Initiator) -> dict[str, Any]:
@@ -52,13 +62,13 @@ def _allowed(schema: dict[str, Any]) -> str:
         return str(schema["const"])
     if schema.get("type") == "array":
         return "[" + ", ".join(_allowed(item) for item in schema.get("prefixItems", ())) + "]"
-    names = {
-        "number": "number",
-        "integer": "whole number",
-        "null": "none",
-        "string": "text",
-        "boolean": "true, false",
-    }
-    bounds = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
-    limits = [f"{sign} {schema[key]:g}" for key, sign in bounds.items() if key in schema]
-    return " ".join([names.get(schema.get("type", ""), "value"), *([", ".join(limits)] if limits else [])])
+    limits = [f"{sign} {schema[key]:g}" for key, sign in BOUNDS.items() if _tells(schema, key)]
+    return " ".join([TYPES.get(schema.get("type", ""), "value"), *([", ".join(limits)] if limits else [])])
+
+
+def _tells(schema: dict[str, Any], key: str) -> bool:
+    """Return whether a bound says something: not what the width of a number or a stricter bound says."""
+    if key not in schema or abs(schema[key]) == LARGEST_WHOLE:
+        return False
+    stricter = {"maximum": "exclusiveMaximum", "minimum": "exclusiveMinimum"}.get(key, "")
+    return schema.get(stricter) != schema[key]

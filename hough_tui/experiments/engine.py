@@ -157,7 +157,7 @@ class Job:
             if self._cancelled.is_set():
                 return
 
-    def _plain(self, shared: SharedDraws, run: SharedTracks, chunk: PlotChunk) -> TrackChunk:
+    def _plain(self, shared: SharedDraws, run: SharedTracks, chunk: PlotChunk) -> tuple[TrackChunk, float]:
         assert self._processes is not None
         given = (run.entry.initiator, run.parameters, shared.scenario.context, chunk)
         return self._processes.submit(initiate_trials, *given).result()

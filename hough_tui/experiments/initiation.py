@@ -62,7 +62,9 @@ class Initiation:
     seconds: float
 
 
-def context_of(recording: Recording, known: Known, like: Context | None) -> tuple[Context, dict[str, str]]:
+def context_of(
+    recording: Recording, known: Known, like: Context | None, window: tuple[int, int] | None = None
+) -> tuple[Context, dict[str, str]]:
     """Return the context of a recording, and in words what of it was assumed.
 
     Parameters
@@ -70,9 +72,10 @@ def context_of(recording: Recording, known: Known, like: Context | None) -> tupl
     recording : plots
     known : what the user says; it goes before everything else
     like : the context of a scenario that the plots are like
+    window : the scans that were asked for; without it the last scan is the last with a plot
     """
     plots, assumed = recording.plots, dict(recording.assumed)
-    scans = int(plots.scan[-1]) + 1
+    scans = int(plots.scan[-1]) + 1 if window is None else window[1] - window[0]
     if like is not None:
         base = replace(like, scans=scans, interval=recording.interval)
     else:
@@ -86,7 +89,7 @@ def context_of(recording: Recording, known: Known, like: Context | None) -> tupl
         if known.unit is None:
             assumed["unit"] = "km"
         if known.sigma is None:
-            assumed["sigma"] = "not known: the width of a column follows from the region"
+            assumed["sigma"] = "not known: what depends on the noise follows from the region"
     given: dict[str, Any] = {}
     if known.sigma is not None:
         given["sigma"] = (known.sigma, known.sigma)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 
 from algorithms.context import Context
@@ -11,8 +13,10 @@ from algorithms.plots import PlotChunk
 from algorithms.tracks import TrackChunk, Tracks
 
 
-def initiate_trials(name: str, parameters: Parameters, context: Context, chunk: PlotChunk) -> TrackChunk:
-    """Return the tracks of each trial of a chunk, with their plots.
+def initiate_trials(
+    name: str, parameters: Parameters, context: Context, chunk: PlotChunk
+) -> tuple[TrackChunk, float]:
+    """Return the tracks of each trial of a chunk, with their plots, and the processor time that they took.
 
     Parameters
     ----------
@@ -21,9 +25,9 @@ def initiate_trials(name: str, parameters: Parameters, context: Context, chunk: 
     chunk : plots
     """
     algorithm = initiator(name)
-    return gathered(
-        [algorithm.initiate(chunk.trial(index), context, parameters) for index in range(chunk.trials)]
-    )
+    began = time.thread_time()
+    found = [algorithm.initiate(chunk.trial(index), context, parameters) for index in range(chunk.trials)]
+    return gathered(found), time.thread_time() - began
 
 
 def gathered(trials: list[Tracks]) -> TrackChunk:

@@ -96,7 +96,7 @@ def track_sheet(document: Document, most: int | None = None) -> Sheet:
     rho = _numbers(tracks, "rho")
     decimals = decimals_of_lengths([*rho, *(number(part) for track in tracks for part in _position(track))])
     columns = [
-        Column("#", tuple(str(index + 1) for index in range(len(tracks)))),
+        Column("#", tuple(map(str, range(len(tracks))))),
         Column("score", aligned([as_given(track.get("score")) for track in tracks])),
         Column("plots", tuple(str(len(track.get("plots") or [])) for track in tracks), rank=30),
         Column("θ\n°", tuple(fixed(number(track.get("theta_deg")), 2) for track in tracks), rank=10),

@@ -34,13 +34,13 @@ class HoughApp(App[None]):
     ENABLE_COMMAND_PALETTE = True
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("f1", "explain", "Help", id="app.help", priority=True),
+        Binding("ctrl+q", "leave", "Quit", id="app.quit", priority=True),
         Binding("ctrl+o", "open", "Open", id="app.open", priority=True, show=False),
         Binding("ctrl+s", "save", "Save", id="app.save", priority=True),
         Binding("f12", "save_as", "Save as", id="app.save-as", priority=True, show=False),
         Binding("ctrl+z", "undo", "Undo", id="app.undo", priority=True),
         Binding("ctrl+y", "redo", "Redo", id="app.redo", priority=True, show=False),
         Binding("f5", "run", "Run", id="app.run", priority=True),
-        Binding("ctrl+q", "leave", "Quit", id="app.quit", priority=True),
     ]
 
     def __init__(self, set_name: str | None, config: Config) -> None:

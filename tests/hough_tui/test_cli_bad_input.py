@@ -176,7 +176,7 @@ def test_the_set_of_these_tests_is_right(write, data_home, monkeypatch, capsys, 
     with pytest.raises(SystemExit) as ended:
         main()
     assert ended.value.code == 0
-    assert capsys.readouterr().out == "small.yaml: valid: 1 scenarios, 1 initiators, 1 experiments\n"
+    assert capsys.readouterr().out == "small.yaml: valid: 1 scenario, 1 initiator, 1 experiment\n"
 
 
 @pytest.mark.parametrize(

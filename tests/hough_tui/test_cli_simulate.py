@@ -2,6 +2,7 @@
 
 import csv
 import io
+import os
 import stat
 import subprocess
 import sys
@@ -156,14 +157,22 @@ def test_an_output_in_no_folder_is_one_line_and_no_traceback(cli, tmp_path):
     assert "nowhere" in err
 
 
-@pytest.mark.parametrize("rate", [50, 3000], ids=["fits a pipe", "more than a pipe holds"])
-def test_a_reader_that_stops_early_sees_no_traceback(rate):
+@pytest.mark.parametrize(
+    ("rate", "status"), [(50, {0, 1}), (3000, {1})], ids=["a little", "more than a pipe holds"]
+)
+def test_a_reader_that_stops_early_sees_no_traceback(rate, status):
     command = [sys.executable, "-c", "from hough_tui.cli import main; main()", *CROSSING]
+    # Without buffers a write that the reader cuts short is no error to Python.
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONUNBUFFERED"}
     with subprocess.Popen(
-        [*command, "--set", f"rate={rate}"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=PROJECT
+        [*command, "--set", f"rate={rate}"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        cwd=PROJECT,
+        env=environment,
     ) as process:
         assert process.stdout.readline() == b"scan,time,x,y,target,true_x,true_y\n"
         process.stdout.close()
         err = process.stderr.read().decode()
     assert [line for line in err.splitlines() if "compiling" not in line] == []
-    assert process.returncode in (0, 1)
+    assert process.returncode in status

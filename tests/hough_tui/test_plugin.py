@@ -106,6 +106,7 @@ def hough_tui(data_home, tmp_path):
             [sys.executable, "-c", "from hough_tui.cli import main; main()", *arguments],
             capture_output=True,
             text=True,
+            timeout=120,
             cwd=tmp_path,
             env={**os.environ, "PYTHONPATH": os.pathsep.join([str(site), str(PROJECT)])},
         )

@@ -23,7 +23,7 @@ from hough_tui.ui.forms.alternatives import (
     text_bounds,
 )
 from hough_tui.ui.forms.labels import component_names, label_of
-from hough_tui.ui.forms.numbers import ONE_NUMBER, Sort, Wanted
+from hough_tui.ui.forms.numbers import ONE_NUMBER, Wanted
 
 NAME = "name"
 """The field by which the elements of a list are told apart."""
@@ -141,8 +141,8 @@ def ordered(fields: Sequence[FieldDescription]) -> list[FieldDescription]:
 
 def components(field: FieldDescription) -> tuple[FieldDescription, ...]:
     """Return the numbers of a vector as fields of their own; none where they have no names."""
-    kind = Kind.WHOLE if field.wanted.sort is Sort.WHOLE else Kind.NUMBER
-    one = Wanted(field.wanted.sort)
+    kind = Kind.WHOLE if field.wanted.whole else Kind.NUMBER
+    one = Wanted(field.wanted.whole)
     return tuple(
         replace(field, path=(*field.path, index), label=part, kind=kind, wanted=one, parts=())
         for index, part in enumerate(field.parts)
@@ -219,7 +219,7 @@ def _of_kind(plain: FieldDescription, found: list[Alternative]) -> FieldDescript
     if bool in kinds:
         return replace(plain, kind=Kind.FLAG)
     if any(typing.get_origin(kind) is dict for kind in kinds):
-        return replace(plain, kind=Kind.MAPPING, wanted=Wanted(Sort.EITHER, None))
+        return replace(plain, kind=Kind.MAPPING, wanted=Wanted(size=None))
     if any(element.kind is str for element in elements):
         return replace(plain, kind=Kind.TEXTS)
     return _numeric(plain, others, words)
@@ -232,15 +232,14 @@ def _numeric(plain: FieldDescription, found: list[Alternative], words: tuple[str
     numbers = single + [element for element in elements if element.kind in (int, float)]
     if not numbers:
         return replace(plain, bounds=text_bounds(found))
-    kinds = {number.kind for number in numbers}
-    sort = Sort.WHOLE if kinds == {int} else Sort.REAL if kinds == {float} else Sort.EITHER
+    whole = all(number.kind is int for number in numbers)
     size = several[0].length if several else 0
-    wanted = Wanted(sort, size, bool(several and single), words, plain.optional)
+    wanted = Wanted(whole, size, bool(several and single), words, plain.optional)
     # A vector that may be one number, a word or nothing is typed as a whole.
     parts = () if wanted.single or words or plain.optional else component_names(plain.help)
     return replace(
         plain,
-        kind=Kind.VECTOR if several else Kind.WHOLE if sort is Sort.WHOLE else Kind.NUMBER,
+        kind=Kind.VECTOR if several else Kind.WHOLE if whole else Kind.NUMBER,
         bounds=number_bounds(numbers),
         wanted=wanted,
         parts=parts if several and len(parts) == size else (),

@@ -49,6 +49,7 @@ class ListTable(Widget):
         layers: default editor;
         & > .list--empty { display: none; height: 1; padding-left: 1; color: $text-muted; }
         & > .list--message { display: none; height: auto; padding-left: 2; color: $text-error; }
+        &:focus-within { color: $foreground; }
         &:focus-within > ListBar > Static { color: $text-accent; }
     }
     """
@@ -107,7 +108,7 @@ class ListTable(Widget):
         holder: BaseModel | None = None,
         unit: Unit | None = None,
     ) -> None:
-        """Show elements; a cell under edit stays open unless its value is the one that it asked for.
+        """Show elements; a cell under edit stays open until it has the value that it asked for.
 
         Parameters
         ----------
@@ -115,28 +116,30 @@ class ListTable(Widget):
         holder : what the list is part of: empty groups of an element are taken from it
         unit : the unit of lengths
         """
-        is_same = field.path == self.field.path
+        is_same = field.path == self.field.path and len(elements) == len(self._elements)
         self.field, self._elements, self._holder, self._unit = field, elements, holder, unit
         self._columns = columns_of(field.models, unit)
         if self.is_mounted:
             self._show()
         editor = self._editor
         if editor is None:
-            self.show_problem(None)
-        elif not is_same or editor.place.row >= len(elements):
+            self._say(None)
+        elif not is_same:
+            # The rows are others now; an edit must not end up in one that it was not meant for.
             self._close()
         elif editor.asked is not None and self._value_at(editor.place) == editor.asked[0]:
             self._close(editor.step)
 
     def show_problem(self, problem: Problem | None) -> None:
         """Say below the table what is wrong; None takes it away."""
-        editor = self._editor
-        if problem is not None and editor is not None:
+        editor, self._new_row = self._editor, None
+        if problem is None:
+            return self._say(None)
+        where = f"{dotted(problem.path[len(self.field.path) - 1 :])}: "
+        if editor is not None:
             editor.refuse()
-        if problem is None or (editor is not None and problem.path == editor.path):
-            self._say(problem.message if problem else None)
-        else:
-            self._say(f"{dotted(problem.path[len(self.field.path) - 1 :])}: {problem.message}")
+            where = "" if problem.path == editor.path else where
+        self._say(where + problem.message)
 
     def worked_out(self) -> Sequence[tuple[str, str]]:
         """Return label and unit of the columns that are worked out of the others."""
@@ -168,8 +171,7 @@ class ListTable(Widget):
 
     def action_explain(self) -> None:
         """Explain the field under the cursor."""
-        place = self._editor.place if self._editor else self._table.cursor_coordinate
-        path = self.cursor_path
+        place, path = self._table.cursor_coordinate, self.cursor_path
         if path is not None:
             column = self._columns[place.column]
             text = self._editor.text if self._editor else text_of(column, self._value_at(place))
@@ -193,12 +195,10 @@ class ListTable(Widget):
 
     def action_cancel(self) -> None:
         """Leave the cell as it was."""
-        editor = self._editor
-        if editor is not None:
-            if editor.is_wrong:
-                # The set's own value again: whoever waits for the cell to be mended is told so.
-                self._post(editor.place, editor.value)
-            self._close()
+        if self._editor is not None and self._editor.is_wrong:
+            # The set's own value again: whoever waits for the cell to be mended is told so.
+            self._post(self._editor.place, self._editor.value)
+        self._close()
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         return self._editor is not None if action in ("finish", "cancel") else True
@@ -260,17 +260,14 @@ class ListTable(Widget):
             self._editor.line.focus()
             return
         if place.column >= len(self._columns):
-            self._say("this is worked out of the other columns; edit those")
-            return
+            return self._say("this is worked out of the other columns; edit those")
         column, path = self._columns[place.column], (*self.field.path, place.row)
         if not has(self._elements[place.row], column):
-            self._say(f"this one has no {within(column.label)}")
-            return
+            return self._say(f"this one has no {within(column.label)}")
         value = self._value_at(place)
         self._say(None)
         if column.kind in (Kind.FLAG, Kind.CHOICE):
-            self._post(place, next_of(column, value))
-            return
+            return self._post(place, next_of(column, value))
         hint = text_of(column, inherited(column, self._holder)) or ("none" if column.optional else "")
         self._editor = CellEditor(column, place, (*path, *column.path), value, hint)
         self.mount(self._editor)
@@ -283,19 +280,22 @@ class ListTable(Widget):
 
     def _post(self, place: Coordinate, value: Any) -> None:
         base = (*self.field.path, place.row)
-        path, found = (*base, *self._columns[place.column].path), self.field.models
-        element = self._elements[place.row]
-        self.post_message(FieldEdited(*edit_of(element, base, path, value, holder=self._holder, found=found)))
+        path, element = (*base, *self._columns[place.column].path), self._elements[place.row]
+        edit = edit_of(element, base, path, value, holder=self._holder, found=self.field.models)
+        self.post_message(FieldEdited(*edit))
 
     def _close(self, step: int = 0) -> None:
         editor, self._editor = self._editor, None
         if editor is not None:
             if editor.line.has_focus:
                 self._table.focus(scroll_visible=False)
+                self._table.move_cursor(row=editor.place.row, column=max(0, editor.place.column + step))
             editor.remove()
-            self._table.move_cursor(row=editor.place.row, column=max(0, editor.place.column + step))
         self._say(None)
 
     def _say(self, words: str | None) -> None:
         self._message.update(Content(f"! {words}" if words else ""))
         self._message.display = bool(words)
+        if words and self.has_focus_within:
+            # The table may stand at the end of what can be seen of the form.
+            self.call_after_refresh(self._message.scroll_visible, animate=False)

@@ -46,10 +46,10 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
         height: 1fr;
         padding: 0 1;
         scrollbar-size-vertical: 1;
-        & > .form--problem { display: none; dock: top; height: auto; color: $text-error; padding: 0 1; }
-        & > .form--problem { background: $surface; }
-        & > .form--heading { height: 1; margin-top: 1; color: $text-muted; text-wrap: nowrap; }
-        & > .form--heading { text-overflow: ellipsis; }
+        & > .form--problem { display: none; dock: top; height: auto; padding: 0 1; }
+        & > .form--problem { background: $surface; color: $text-error; }
+        & > .form--heading { height: 1; margin-top: 1; color: $text-muted; }
+        & > .form--heading { text-wrap: nowrap; text-overflow: ellipsis; }
         & > ListTable { margin-top: 1; }
         & > _Fields { grid-size: 1; }
         &.-wide > _Fields { grid-size: 2; grid-columns: 1fr 1fr; grid-gutter: 0 2; }
@@ -57,8 +57,8 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
     """
 
     BINDINGS = [
-        Binding("down", "next_field", "Next field", show=False, id="form.next_field"),
-        Binding("up", "previous_field", "Field before", show=False, id="form.previous_field"),
+        Binding("down", "app.focus_next", "Next field", show=False, id="form.next_field"),
+        Binding("up", "app.focus_previous", "Field before", show=False, id="form.previous_field"),
         Binding("pagedown", "page_down", "Page down", show=False, id="form.page_down"),
         Binding("pageup", "page_up", "Page up", show=False, id="form.page_up"),
     ]
@@ -113,12 +113,7 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
         return self._tables.get(path[len(self._path) :]) if self._has(path) else None
 
     def load(
-        self,
-        model: BaseModel,
-        path: Path,
-        *,
-        unit: Unit | None = None,
-        resolved: BaseModel | None = None,
+        self, model: BaseModel, path: Path, *, unit: Unit | None = None, resolved: BaseModel | None = None
     ) -> None:
         """Show a model; nothing is posted for what it changes.
 
@@ -170,14 +165,6 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
             if inner is not None:
                 inner.focus()
                 return
-
-    def action_next_field(self) -> None:
-        """Go to the next field."""
-        self.screen.focus_next()
-
-    def action_previous_field(self) -> None:
-        """Go to the field before."""
-        self.screen.focus_previous()
 
     @on(Input.Submitted)
     def _submitted(self, event: Input.Submitted) -> None:

@@ -11,7 +11,6 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from enum import StrEnum
 from itertools import pairwise
 
 Value = float | int | str | tuple[float | int, ...] | None
@@ -23,7 +22,8 @@ MOST_DIGITS = 40
 _EXPONENT = r"(?:[eE][+-]?\d{1,9})?"
 _NUMBER = re.compile(rf"[+-]?(?:\d+\.?\d*|\.\d+){_EXPONENT}", re.ASCII)
 _DECIMAL_COMMA = re.compile(rf"[+-]?\d*,\d+{_EXPONENT}", re.ASCII)
-_INTEGER = re.compile(r"[+-]?\d+", re.ASCII)
+# No more digits than a float holds.
+_INTEGER = re.compile(r"[+-]?\d{1,15}", re.ASCII)
 # A mark of thousands, the same throughout, and perhaps the other sign for the decimals.
 _MARKS = r"[,. '’_\u00a0\u2009\u202f]"
 _GROUPED = re.compile(
@@ -36,28 +36,20 @@ _NOT_FINITE = re.compile(r"[+-]?(?:inf|infinity|nan)", re.IGNORECASE)
 _SPACE = re.compile(r"\s")
 
 
-class Sort(StrEnum):
-    """Which numbers are wanted."""
-
-    REAL = "real"
-    WHOLE = "whole"
-    EITHER = "either"
-
-
 @dataclass(frozen=True, slots=True)
 class Wanted:
     """What a field takes.
 
     Attributes
     ----------
-    sort : which numbers
+    whole : whether only whole numbers are taken
     size : 0 for one number, else how many; None for any number of them
     single : whether one number may stand for all of several
     words : words that are taken beside numbers
     optional : whether nothing is taken
     """
 
-    sort: Sort = Sort.REAL
+    whole: bool = False
     size: int | None = 0
     single: bool = False
     words: tuple[str, ...] = ()
@@ -66,7 +58,7 @@ class Wanted:
     @property
     def allowed(self) -> str:
         """What is taken, in words."""
-        whole = "whole " if self.sort is Sort.WHOLE else ""
+        whole = "whole " if self.whole else ""
         choices = [f"a {whole}number"] if self.size == 0 or self.single else []
         if self.size != 0:
             choices.append(f"{'a list of' if self.size is None else self.size} {whole}numbers")
@@ -100,7 +92,7 @@ def read(text: str, wanted: Wanted = ONE_NUMBER) -> Value | Unreadable:
     try:
         if wanted.size == 0 or (wanted.single and _is_one(plain)):
             return _number(plain, given, wanted)
-        one = Wanted(wanted.sort)
+        one = Wanted(wanted.whole)
         return tuple(_number(item, item, one) for item in _items(plain, given, wanted))
     except _RefusedError as refused:
         return Unreadable(str(refused))
@@ -147,7 +139,7 @@ def _number(text: str, given: str, wanted: Wanted) -> float | int:
 
 
 def _converted(text: str, given: str, wanted: Wanted) -> float | int:
-    if wanted.sort is Sort.WHOLE or (wanted.sort is Sort.EITHER and _INTEGER.fullmatch(text)):
+    if wanted.whole:
         # Exactly: seeds have more digits than a float holds.
         exact = Decimal(text)
         if exact and exact.adjusted() > MOST_DIGITS:
@@ -155,6 +147,9 @@ def _converted(text: str, given: str, wanted: Wanted) -> float | int:
         if exact != exact.to_integral_value():
             raise _RefusedError(f"'{given}' is given; it must be {wanted.allowed}")
         return int(exact)
+    if _INTEGER.fullmatch(text):
+        # What is said of the value shows it as it was typed, and swept whole numbers stay whole.
+        return int(text)
     value = float(text)
     if math.isinf(value):
         raise _RefusedError(f"'{given}' is too large")

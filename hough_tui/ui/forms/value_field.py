@@ -57,6 +57,9 @@ class ValueField(Widget):
         & > Input.field--control { padding: 0 1; }
         & > Select.field--control > SelectCurrent { padding: 0 1; }
         & > Input.-wrong { background-tint: $error 25%; }
+        &:ansi > Input.field--control { text-style: underline; }
+        /* Textual looks at what is inside only where the widget itself has such a rule. */
+        &:focus-within { color: $foreground; }
         &:focus-within > .field--label { text-style: bold; color: $text-accent; }
         &.-noted > .field--note { display: block; }
         &.-roomy { grid-size: 3; grid-columns: 22 24 1fr; }
@@ -261,3 +264,5 @@ class ValueField(Widget):
         self._message.update(Content(f"! {problem}" if problem else ""))
         self._message.display = bool(problem)
         self._control.set_class(bool(problem), "-wrong")
+        if problem and self.has_focus_within:
+            self.call_after_refresh(self._message.scroll_visible, animate=False)

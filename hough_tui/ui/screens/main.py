@@ -9,8 +9,9 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Container, Horizontal
 from textual.screen import Screen
-from textual.widgets import Footer, TabbedContent, TabPane
+from textual.widgets import TabbedContent, TabPane
 
+from hough_tui.ui.widgets.key_line import KeyLine
 from hough_tui.ui.widgets.status_line import StatusLine
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ class MainScreen(Screen[None]):
                 for name, title in TABS.items():
                     yield ViewPane(title, id=name)
         yield StatusLine()
-        yield Footer(show_command_palette=True)
+        yield KeyLine(show_command_palette=True)
 
     def on_resize(self) -> None:
         """Take the tree out of a narrow screen."""

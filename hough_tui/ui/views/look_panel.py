@@ -195,7 +195,7 @@ def plane_scene(seen: TrialLook) -> PlaneScene:
         PlaneTrack(
             position[seen.tracks.plots[index]],
             "unknown" if seen.state is None else STATES[int(seen.state[index])],
-            str(index + 1),
+            str(index),
         )
         for index in range(min(len(seen.tracks), MOST_DRAWN))
     )

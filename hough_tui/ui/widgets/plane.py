@@ -214,6 +214,8 @@ class Plane(Chart):
         view = self.viewport
         x, y = self._scene.position[plot].tolist()
         if not view.limits.holds(x, y):
+            bounds = self.bounds()
+            x, y = min(max(x, bounds.left), bounds.right), min(max(y, bounds.bottom), bounds.top)
             self.look_at(view.showing(x, y).limits)
 
     def _nearest(self, groups: list[NDArray[np.float64]], row: int, column: int) -> int | None:
@@ -223,13 +225,13 @@ class Plane(Chart):
             return None
         points = np.concatenate(groups)
         group = np.repeat(np.arange(len(groups)), [len(one) for one in groups])
-        across = view.column(points[:, 0]) - (column + 0.5)
-        down = view.row(points[:, 1]) - (row + 0.5)
-        distance = np.hypot(across, down)
-        near = np.flatnonzero(distance <= REACH)
+        with np.errstate(over="ignore"):
+            columns, rows = view.column(points[:, 0]), view.row(points[:, 1])
+        near = np.flatnonzero(np.hypot(np.floor(columns) - column, np.floor(rows) - row) <= REACH)
         if not len(near):
             return None
-        return int(group[near[len(near) - 1 - int(np.argmin(distance[near][::-1]))]])
+        distance = np.hypot(columns[near] - (column + 0.5), rows[near] - (row + 0.5))
+        return int(group[near[len(near) - 1 - int(np.argmin(distance[::-1]))]])
 
     def _words(self, colours: Palette, viewport: Viewport, width: int) -> Words:
         """Return the line at the foot: the chosen plot or track, or else the legend."""

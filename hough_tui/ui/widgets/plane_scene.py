@@ -230,18 +230,19 @@ def _labelled(canvas: Canvas, tracks: Sequence[PlaneTrack], chosen: int | None) 
         if not words or not len(finite) or not viewport.limits.holds(*finite[0].tolist()):
             continue
         row, column = int(viewport.row(float(finite[0, 1]))), int(viewport.column(float(finite[0, 0])))
-        for label in (
+        places = [
             Label(row, column + 2, words, index),
             Label(row, column - 1 - len(words), words, index),
             Label(row - 1, column + 1, words, index),
             Label(row + 1, column + 1, words, index),
-        ):
-            # A blank on each side keeps labels and marks apart.
-            room = label.column - 1, len(words) + 2
-            if canvas.is_free(label.row, *room):
-                found.append(label)
-                canvas.write(label.row, label.column, words, RULE)
-                break
+        ]
+        # A blank on each side keeps labels and marks apart.
+        free = [label for label in places if canvas.is_free(label.row, label.column - 1, len(words) + 2)]
+        if not free and index == chosen:
+            free = [label for label in places if 0 <= label.column <= viewport.width - len(words)]
+        if free:
+            found.append(free[0])
+            canvas.write(free[0].row, free[0].column, words, RULE)
         if len(found) == MOST_LABELS:
             break
     return found

@@ -74,7 +74,7 @@ class TrackGrid(DataTable[Text]):
             state = ("–", "dim") if seen.state is None else STATES[int(seen.state[index])]
             speed, heading = _course(tracks.velocity[index])
             cells = (
-                f"{index + 1}",
+                f"{index}",
                 f"{tracks.score[index]:g}",
                 f"{len(tracks.plots[index])}",
                 f"{math.degrees(tracks.theta[index]):.2f}",

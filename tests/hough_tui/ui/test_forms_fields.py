@@ -10,7 +10,7 @@ from algorithms.parameters import Auto, Count, Declared, Dimension, Positive, fi
 from hough_tui.ui.forms.columns import columns_of
 from hough_tui.ui.forms.edits import duplicate, edit_of, names_of, starter, together, unused, value_in
 from hough_tui.ui.forms.fields import FieldDescription, Kind, described, walk
-from hough_tui.ui.forms.numbers import Sort, Unreadable
+from hough_tui.ui.forms.numbers import Unreadable
 from hough_tui.ui.forms.texts import text_of, value_of
 from hough_tui.ui.screens.explanation import explained
 from scenarios.files import bundled_paths, load_set
@@ -134,7 +134,7 @@ def test_what_a_plug_in_may_declare():
 
     fields = {field.path[0]: field for field in described(Odd, (), Unit.KILOMETRE)}
     assert value_of(fields["sizes"], "1 2 3") == (1, 2, 3)
-    assert fields["sizes"].wanted.sort is Sort.WHOLE
+    assert fields["sizes"].wanted.whole
     assert value_of(fields["weights"], "") is None
     assert isinstance(value_of(fields["weights"], "1 2"), Unreadable)
     assert fields["span"].parts == ("low", "high")

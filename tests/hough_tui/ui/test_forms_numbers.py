@@ -4,12 +4,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hough_tui.ui.forms.numbers import Sort, Unreadable, Wanted, number_text, numbers_text, read
+from hough_tui.ui.forms.numbers import Unreadable, Wanted, number_text, numbers_text, read
 
 PAIR = Wanted(size=2)
 ONE_OR_PAIR = Wanted(size=2, single=True)
-WHOLE = Wanted(Sort.WHOLE)
-SWEPT = Wanted(Sort.EITHER, None)
+WHOLE = Wanted(whole=True)
+SWEPT = Wanted(size=None)
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 
@@ -145,7 +145,7 @@ def test_what_is_no_whole_number_is_refused(text):
     assert isinstance(read(text, WHOLE), Unreadable)
 
 
-def test_swept_values_keep_their_sort():
+def test_whole_numbers_among_others_stay_whole():
     found = read("5, 10, 0.5", SWEPT)
     assert found == (5, 10, 0.5)
     assert [type(value) for value in found] == [int, int, float]

@@ -1,83 +1,14 @@
-import asyncio
-from collections.abc import Awaitable, Callable
-
 import pytest
-from textual.app import App, ComposeResult
 from textual.pilot import Pilot
 from textual.widgets import Input, Select
 
 from algorithms.parameters import FieldError, Path, Problem
 from hough_tui.ui.forms.controls import Flag
-from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.forms.value_field import ValueField
-from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited, FieldUnreadable
 from hough_tui.ui.screens.explanation import ExplanationScreen
-from hough_tui.ui.workspace import Workspace
-from scenarios.files import load_set
+from tests.hough_tui.ui.test_forms_app import EXPERIMENT, MODIFIED, SCENARIO, SEQUENTIAL, FormApp, drive
 
-SCENARIO, SEQUENTIAL, MODIFIED = ("scenarios", 0), ("initiators", 1), ("initiators", 2)
-EXPERIMENT = ("experiments", 0)
 STEP = (*SEQUENTIAL, "grid", "rho_step")
-
-
-class FormApp(App[None]):
-    """A form on a real set: what is posted is asked of the set, and answered as the form expects it."""
-
-    AUTO_FOCUS = None
-
-    def __init__(self, path: Path) -> None:
-        super().__init__()
-        self.workspace = Workspace(load_set("course-report"), None)
-        self.path = path
-        self.form = ModelForm()
-        self.posted: list[tuple[Path, object]] = []
-        self.unreadable: list[str] = []
-
-    def compose(self) -> ComposeResult:
-        yield self.form
-
-    def on_mount(self) -> None:
-        self.show()
-
-    def show(self) -> None:
-        model, scenario = self.workspace.value(self.path), self.workspace.given.scenarios[0]
-        resolved = model.parameters.resolved(scenario.context) if self.path[0] == "initiators" else None
-        self.form.load(model, self.path, unit=scenario.unit, resolved=resolved)
-
-    def answer(self, action: Callable[..., None], *arguments: object) -> None:
-        self.posted.append((arguments[0], arguments[-1]))
-        try:
-            action(*arguments)
-        except FieldError as error:
-            self.form.problems([error.problem])
-        else:
-            self.show()
-
-    def on_field_edited(self, event: FieldEdited) -> None:
-        self.answer(self.workspace.set, event.path, event.value)
-
-    def on_field_unreadable(self, event: FieldUnreadable) -> None:
-        self.unreadable.append(event.message)
-
-    def on_element_added(self, event: ElementAdded) -> None:
-        self.answer(self.workspace.insert, event.path, event.value)
-
-    def on_element_removed(self, event: ElementRemoved) -> None:
-        self.answer(self.workspace.remove, event.path)
-
-
-Journey = Callable[[FormApp, Pilot[None]], Awaitable[None]]
-
-
-def drive(path: Path, journey: Journey, size: tuple[int, int] = (120, 40)) -> FormApp:
-    async def run() -> FormApp:
-        app = FormApp(path)
-        async with app.run_test(size=size) as pilot:
-            await pilot.pause()
-            await journey(app, pilot)
-        return app
-
-    return asyncio.run(run())
 
 
 async def typed(app: FormApp, pilot: Pilot[None], path: Path, text: str) -> ValueField:
@@ -89,19 +20,6 @@ async def typed(app: FormApp, pilot: Pilot[None], path: Path, text: str) -> Valu
     field = app.form.field(path)
     assert field is not None
     return field
-
-
-@pytest.mark.parametrize("size", [(160, 48), (80, 24), (36, 20)])
-def test_mounting_and_loading_again_post_nothing(size):
-    async def journey(app, pilot):
-        for path in (("initiators", 0), SEQUENTIAL, MODIFIED, EXPERIMENT, SCENARIO, SCENARIO):
-            app.path = path
-            app.show()
-            await pilot.pause()
-            assert app.form.is_sound
-
-    app = drive(SCENARIO, journey, size)
-    assert (app.posted, app.unreadable) == ([], [])
 
 
 def test_a_typed_number_takes_effect_and_is_left_as_it_was_typed():
@@ -118,7 +36,7 @@ def test_a_typed_number_takes_effect_and_is_left_as_it_was_typed():
 def test_a_wrong_value_is_refused_beside_its_field_in_the_words_of_the_model():
     async def journey(app, pilot):
         field = await typed(app, pilot, STEP, "-1")
-        assert field.problem == "-1.0 is given; it must be greater than 0 or 'auto'"
+        assert field.problem == "-1 is given; it must be greater than 0 or 'auto'"
         assert field.query_one(".field--message").display
         assert not app.form.is_sound
         await typed(app, pilot, STEP, "0.6")
@@ -244,6 +162,16 @@ def test_the_explaining_key_can_be_remapped():
 
     app = drive(SEQUENTIAL, journey)
     assert app.workspace.value(STEP) == 0.6
+
+
+def test_arrows_and_enter_go_from_field_to_field():
+    async def journey(app, pilot):
+        app.form.focus_field((*SEQUENTIAL, "votes"))
+        await pilot.press("down", "enter", "up")
+        await pilot.pause()
+        assert app.form.field((*SEQUENTIAL, "fraction")).query_one(Input).has_focus
+
+    assert drive(SEQUENTIAL, journey).posted == []
 
 
 def test_choices_and_flags():

@@ -1,80 +1,20 @@
-import asyncio
-from collections.abc import Awaitable, Callable
-
-from textual.app import App, ComposeResult
 from textual.coordinate import Coordinate
 from textual.pilot import Pilot
 from textual.widgets import Button, Input
 
-from algorithms.parameters import FieldError, Path
+from algorithms.parameters import Path
 from hough_tui.ui.forms.cell_table import CellTable
 from hough_tui.ui.forms.list_table import ListTable
 from hough_tui.ui.forms.model_form import ModelForm
-from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited, FieldUnreadable
 from hough_tui.ui.screens.explanation import ExplanationScreen
-from hough_tui.ui.workspace import Workspace
-from scenarios.files import load_set
+from tests.hough_tui.ui.test_forms_app import SCENARIO, FormApp, drive
 
-TARGETS, CLUTTER = ("scenarios", 0, "targets"), ("scenarios", 0, "clutter")
+TARGETS, CLUTTER = (*SCENARIO, "targets"), (*SCENARIO, "clutter")
 X, Y, VX, VY, BIRTH, DEATH, SPEED = range(1, 8)
 """The columns of the table of targets, after the name."""
 
 
-class TableApp(App[None]):
-    """A scenario's form on a real set."""
-
-    AUTO_FOCUS = None
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.workspace = Workspace(load_set("course-report"), None)
-        self.form = ModelForm()
-        self.posted: list[str] = []
-        self.unreadable: list[str] = []
-
-    def compose(self) -> ComposeResult:
-        yield self.form
-
-    def on_mount(self) -> None:
-        self.show()
-
-    def show(self) -> None:
-        self.form.load(self.workspace.value(("scenarios", 0)), ("scenarios", 0))
-
-    def answer(self, action: Callable[..., None], *arguments: object) -> None:
-        self.posted.append(action.__name__)
-        try:
-            action(*arguments)
-        except FieldError as error:
-            self.form.problems([error.problem])
-        else:
-            self.show()
-
-    def on_field_edited(self, event: FieldEdited) -> None:
-        self.answer(self.workspace.set, event.path, event.value)
-
-    def on_field_unreadable(self, event: FieldUnreadable) -> None:
-        self.unreadable.append(event.message)
-
-    def on_element_added(self, event: ElementAdded) -> None:
-        self.answer(self.workspace.insert, event.path, event.value)
-
-    def on_element_removed(self, event: ElementRemoved) -> None:
-        self.answer(self.workspace.remove, event.path)
-
-
-def drive(journey: Callable[[TableApp, Pilot[None]], Awaitable[None]]) -> TableApp:
-    async def run() -> TableApp:
-        app = TableApp()
-        async with app.run_test(size=(100, 50)) as pilot:
-            await pilot.pause()
-            await journey(app, pilot)
-        return app
-
-    return asyncio.run(run())
-
-
-async def at(app: TableApp, pilot: Pilot[None], path: Path, row: int, column: int) -> ListTable:
+async def at(app: FormApp, pilot: Pilot[None], path: Path, row: int, column: int) -> ListTable:
     """Put the cursor on a cell."""
     table = app.form.table(path)
     assert table is not None
@@ -87,6 +27,10 @@ async def at(app: TableApp, pilot: Pilot[None], path: Path, row: int, column: in
 async def edit(pilot: Pilot[None], text: str, *after: str) -> None:
     await pilot.press("enter", "home", "ctrl+k", *text, *after)
     await pilot.pause()
+
+
+def asked(app: FormApp) -> list[str]:
+    return [action for action, _ in app.posted]
 
 
 def message(table: ListTable) -> str:
@@ -104,7 +48,7 @@ def test_targets_are_shown_with_speed_and_heading():
         assert rows(table)[0] == ["rising", "40", "20", "0.3", "0.18", "0", "", "0.350", "59.0"]
         assert rows(table)[1][-1] == "121.0"
 
-    assert drive(journey).posted == []
+    assert asked(drive(SCENARIO, journey, (100, 50))) == []
 
 
 def test_a_cell_is_edited_in_its_place():
@@ -116,7 +60,7 @@ def test_a_cell_is_edited_in_its_place():
         assert not table.query(Input)
         assert table.query_one(CellTable).has_focus
 
-    assert drive(journey).posted == ["set"]
+    assert asked(drive(SCENARIO, journey, (100, 50))) == ["set"]
 
 
 def test_tab_takes_the_value_and_goes_to_the_next_cell():
@@ -127,7 +71,7 @@ def test_tab_takes_the_value_and_goes_to_the_next_cell():
         assert app.workspace.value((*TARGETS, 0, "position")) == (41.0, 21.0)
         assert table.query_one(CellTable).cursor_coordinate == (0, VX)
 
-    drive(journey)
+    drive(SCENARIO, journey, (100, 50))
 
 
 def test_a_wrong_cell_stays_open_with_what_is_wrong():
@@ -147,7 +91,7 @@ def test_a_wrong_cell_stays_open_with_what_is_wrong():
         assert message(table) == ""
         assert app.form.is_sound
 
-    app = drive(journey)
+    app = drive(SCENARIO, journey, (100, 50))
     assert app.workspace.value((*TARGETS, 0, "birth")) == 0
     assert not app.workspace.is_changed
 
@@ -158,7 +102,7 @@ def test_a_wrong_thousand_is_never_taken_for_another_number():
         await edit(pilot, "1,000", "enter")
         assert "may mean 1.000 or 1000" in message(table)
 
-    assert drive(journey).posted == []
+    assert asked(drive(SCENARIO, journey, (100, 50))) == []
 
 
 def test_leaving_a_cell_by_the_mouse_takes_what_is_typed():
@@ -171,7 +115,7 @@ def test_leaving_a_cell_by_the_mouse_takes_what_is_typed():
         assert not table.query(Input)
         assert not table.query_one(CellTable).has_focus
 
-    drive(journey)
+    drive(SCENARIO, journey, (100, 50))
 
 
 def test_a_change_from_elsewhere_is_shown_and_leaves_an_open_cell_alone():
@@ -190,7 +134,7 @@ def test_a_change_from_elsewhere_is_shown_and_leaves_an_open_cell_alone():
         await pilot.pause()
         assert rows(table)[0][X] == "40"
 
-    assert drive(journey).posted == ["set"]
+    assert asked(drive(SCENARIO, journey, (100, 50))) == ["set"]
 
 
 def test_elements_are_added_duplicated_and_removed_by_keys():
@@ -212,7 +156,7 @@ def test_elements_are_added_duplicated_and_removed_by_keys():
         await pilot.pause()
         assert [row[0] for row in rows(table)] == ["rising", "falling"]
 
-    assert drive(journey).posted == ["insert", "insert", "remove", "remove"]
+    assert asked(drive(SCENARIO, journey, (100, 50))) == ["insert", "insert", "remove", "remove"]
 
 
 def test_the_last_element_may_go_and_the_first_may_come():
@@ -227,7 +171,7 @@ def test_the_last_element_may_go_and_the_first_may_come():
         assert [source.rate for source in app.workspace.value(CLUTTER)] == [1.0]
         assert not table.query_one(".list--empty").display
 
-    drive(journey)
+    drive(SCENARIO, journey, (100, 50))
 
 
 def test_a_cell_that_spoils_something_elsewhere_stays_open():
@@ -242,7 +186,7 @@ def test_a_cell_that_spoils_something_elsewhere_stays_open():
         assert message(table) == "! this is not taken; the top of the form says why"
         assert not app.form.is_sound
 
-    drive(journey)
+    drive(SCENARIO, journey, (100, 50))
 
 
 def test_the_mouse_edits_and_presses():
@@ -263,7 +207,7 @@ def test_the_mouse_edits_and_presses():
             await pilot.pause()
         assert [target.name for target in app.workspace.value(TARGETS)] == ["rising", "falling", "falling-2"]
 
-    assert drive(journey).posted == ["set", "insert", "insert", "remove"]
+    assert asked(drive(SCENARIO, journey, (100, 50))) == ["set", "insert", "insert", "remove"]
 
 
 def test_an_empty_region_of_clutter_shows_and_begins_as_that_of_the_scenario():
@@ -276,7 +220,7 @@ def test_an_empty_region_of_clutter_shows_and_begins_as_that_of_the_scenario():
         await edit(pilot, "", "enter")
         assert app.workspace.value((*CLUTTER, 0, "region")) is None
 
-    drive(journey)
+    drive(SCENARIO, journey, (100, 50))
 
 
 def test_what_is_worked_out_is_not_edited():
@@ -287,7 +231,7 @@ def test_what_is_worked_out_is_not_edited():
         assert not table.query(Input)
         assert "worked out" in message(table)
 
-    drive(journey)
+    drive(SCENARIO, journey, (100, 50))
 
 
 def test_a_question_mark_explains_the_cell():
@@ -302,7 +246,7 @@ def test_a_question_mark_explains_the_cell():
             await pilot.pause()
         assert app.form.table(TARGETS).query_one(Input).value == "0.3"
 
-    assert drive(journey).posted == []
+    assert asked(drive(SCENARIO, journey, (100, 50))) == []
 
 
 def test_vim_keys_move_the_cursor():
@@ -315,7 +259,7 @@ def test_vim_keys_move_the_cursor():
         await pilot.press("G")
         assert table.cursor_row == 1
 
-    drive(journey)
+    drive(SCENARIO, journey, (100, 50))
 
 
 def test_every_binding_has_an_id_and_a_description():
