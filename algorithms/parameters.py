@@ -90,7 +90,7 @@ class Declared(BaseModel):
 
     @classmethod
     def is_meant(cls, data: Mapping[str, Any]) -> bool:
-        """Return whether data are meant for this one of several models: its literals are those of the data."""
+        """Return whether data are meant for this one of several models, by its literals."""
         return all(
             data[name] in typing.get_args(field.annotation)
             for name, field in cls.model_fields.items()

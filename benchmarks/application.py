@@ -37,8 +37,6 @@ from measure import verdict
 ESCAPES = re.compile(
     rb"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)|P[^\x1b]*\x1b\\|[ -/]*[0-~])"
 )
-    rb"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)|P[^\x1b]*\x1b\\|[ -/]*[0-~])"
-)
 CONTROL = re.compile(rb"[\x00-\x1a\x1c-\x1f]")
 
 F2, F3, F4, F5, F6, F7 = b"\x1bOQ", b"\x1bOR", b"\x1bOS", b"\x1b[15~", b"\x1b[17~", b"\x1b[18~"
@@ -85,6 +83,7 @@ class Terminal:
     def send(self, keys: bytes) -> tuple[float, int]:
         """Type; return the time, and how much had been written by then."""
         self.drain(0.0)
+        self.check()
         at = time.perf_counter(), len(self.written)
         os.write(self._master, keys)
         return at
@@ -92,6 +91,11 @@ class Terminal:
     def text(self, since: int = 0) -> str:
         """Return what was written after a place, without escape sequences."""
         return CONTROL.sub(b"", ESCAPES.sub(b"", bytes(self.written[since:]))).decode(errors="replace")
+
+    def check(self) -> None:
+        """Make sure that the program has not failed: an idle failure would look fast and silent."""
+        if b"Traceback" in self.written:
+            raise RuntimeError(f"the application failed: {self.text()[-400:].strip()!r}")
 
     def drain(self, seconds: float) -> int:
         """Read for some time; return the number of bytes that came."""
@@ -170,6 +174,7 @@ class Inside(Terminal):
 
     def ask(self, **what: Any) -> Any:
         """Have something done in the application; return its answer."""
+        self.check()
         self._ours.sendall(json.dumps(what).encode() + b"\n")
         answer = b""
         while not answer.endswith(b"\n"):
@@ -360,8 +365,6 @@ def accumulator() -> None:
     with place() as (environment, _), closing(Inside("course-report", environment)) as terminal:
         terminal.send(F4)
         terminal.settle(1.0)
-        terminal.send(b"v")  # plane, accumulator and tracks take turns at this width
-        terminal.settle(1.0)
         shown = re.findall(readout, terminal.text())[-1]
         for turn in range(12):
             terminal.send(F3)
@@ -393,17 +396,11 @@ def written_bytes() -> None:
     with place() as (environment, _), closing(Inside("course-report", environment)) as terminal:
         terminal.send(F4)
         terminal.settle(1.0)
-        for panel in ("plane", "accumulator", "tracks"):
-            terminal.settle()
+        for columns, lines in ((80, 24), (160, 48), (120, 40)):
+            terminal.resize(columns, lines)
+            terminal.settle(1.0)
             terminal.ask(do="repaint")
-            counted(f"full repaint of Look, 120 × 40, {panel}", terminal.settle(), 70_000)
-            terminal.send(b"v")
-        terminal.resize(160, 48)
-        terminal.settle(1.0)
-        terminal.ask(do="repaint")
-        counted("full repaint of Look, 160 × 48, all three", terminal.settle(), 70_000)
-        terminal.resize(120, 40)
-        terminal.settle(1.0)
+            counted(f"full repaint of Look, {columns} × {lines}", terminal.settle(), 70_000)
         for name, key in (("Look", F4), ("Initiator", F3), ("Monte Carlo", F6), ("Results", F7)):
             terminal.send(key)
             terminal.settle(1.5)

@@ -216,6 +216,9 @@ class HoughApp(App[None]):
     def _step(self, which: str) -> None:
         if self.workspace is None:
             return
+        if which == "undo" and self._main.take_back_unsound():
+            self.notify("What was typed and not taken is taken back", timeout=2, markup=False)
+            return
         what = getattr(self.workspace, which)()
         if what is None:
             self.notify(f"Nothing to {which}", timeout=2, markup=False)

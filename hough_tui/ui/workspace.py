@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from algorithms.parameters import FieldError, Path, Problem, problems
+from algorithms.parameters import FieldError, Path, Problem, dotted, problems
 from scenarios.checks import inconsistencies
 from scenarios.files import save_set, set_data
 from scenarios.model import ScenarioSet
@@ -21,10 +21,18 @@ MOST_UNDO = 200
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """The state before an edit, and what the edit was, in words."""
+    """The state before an edit, and what the edit was.
+
+    Attributes
+    ----------
+    before : the set before it
+    what : in words
+    path : of the field that was given a value; None where elements were added or removed
+    """
 
     before: ScenarioSet
     what: str
+    path: Path | None
 
 
 class Workspace:
@@ -74,7 +82,9 @@ class Workspace:
         return here
 
     def set(self, path: Path, value: Any) -> None:
-        """Put a value at a path.
+        """Put a value at a path; a new name is put wherever the old one is referred to.
+
+        Further values at the same path belong to the same edit: one step takes them all back.
 
         Raises
         ------
@@ -95,7 +105,9 @@ class Workspace:
             here.pop(path[-1], None)
         else:
             here[path[-1]] = value
-        self._take(data, f"{path[-1]}", path)
+        if len(path) == 3 and path[2] == "name":
+            self._rename(data, str(path[0]), int(path[1]), value)
+        self._take(data, dotted(path), path)
 
     def insert(self, path: Path, value: Any) -> None:
         """Put a new element into a list at a path that ends with its index.
@@ -107,7 +119,7 @@ class Workspace:
         """
         data = set_data(self.given)
         self._list(data, path).insert(int(path[-1]), value)
-        self._take(data, f"add to {path[-2]}", path)
+        self._take(data, f"add to {dotted(path[:-1])}", path, is_value=False)
 
     def remove(self, path: Path) -> None:
         """Take an element out of a list.
@@ -119,7 +131,7 @@ class Workspace:
         """
         data = set_data(self.given)
         del self._list(data, path)[int(path[-1])]
-        self._take(data, f"remove from {path[-2]}", path)
+        self._take(data, f"remove from {dotted(path[:-1])}", path, is_value=False)
 
     def undo(self) -> str | None:
         """Take back the last edit; return what it was."""
@@ -162,7 +174,16 @@ class Workspace:
         found: list[Any] = here
         return found
 
-    def _take(self, data: dict[str, Any], what: str, path: Path) -> None:
+    def _rename(self, data: dict[str, Any], part: str, index: int, name: Any) -> None:
+        """Put a new name where experiments refer to the old one, and keep what the old one said."""
+        old = self.value((part, index)).name
+        if part == "initiators":
+            data[part][index].setdefault("initiator", self.given.initiators[index].initiator)
+        for experiment in data.get("experiments", ()):
+            if part in experiment and experiment[part] is not None:
+                experiment[part] = [name if found == old else found for found in experiment[part]]
+
+    def _take(self, data: dict[str, Any], what: str, path: Path, *, is_value: bool = True) -> None:
         try:
             changed = ScenarioSet.model_validate(data)
         except ValidationError as error:
@@ -172,7 +193,10 @@ class Workspace:
             raise FieldError(_nearest(found, path))
         if changed == self.given:
             return
-        self._undo = [*self._undo[1 - MOST_UNDO :], Edit(self.given, what)]
+        goes_on = is_value and self._undo and self._undo[-1].path == path and not self._redo
+        if not goes_on:
+            edit = Edit(self.given, what, path if is_value else None)
+            self._undo = [*self._undo[1 - MOST_UNDO :], edit]
         self._redo.clear()
         self.given = changed
 

@@ -114,6 +114,12 @@ WRONG_FIELDS = {
     "zero scans swept": ("[5, 6]", "[5, ▸0]", ["sweep.scans[1]", "0 is given", "at least 1"]),
     "no time between scans": ("interval: 4", "interval: ▸0", ["interval", "0 is given", "greater than 0"]),
     "no trials": ("trials: 10", "trials: ▸0", ["experiments[0].trials", "0 is given", "at least 1"]),
+    "too many trials": ("trials: 10", "trials: ▸10000001", ["trials", "10000001", "at most 10000000"]),
+    "too many scans": ("scans: 5", "scans: ▸100001", ["scenarios[0].scans", "100001", "at most 100000"]),
+    "past any whole number": ("scans: 5", f"scans: ▸{10**30}", ["scenarios[0].scans", "at most"]),
+    "too many rows": ("theta_bins: 90", "theta_bins: ▸100001", ["grid.theta_bins", "at most 100000"]),
+    "a parameter of another": ("votes: 4", "▸maxima: 4", ["initiators[0].maxima", "known: grid, votes"]),
+    "text for truth": ("trials: 10", "control: ▸no", ["experiments[0].control", "'no'", "true or false"]),
     "negative seed": ("seed: 3", "seed: ▸-1", ["experiments[0].seed", "-1", "at least 0"]),
     "no area": ("x: [0, 100]", "x: ▸[5, 5]", ["region.x", "[5, 5]", "less than"]),
     "bounds in the wrong order": ("y: [0, 100]", "y: ▸[9, 1]", ["region.y", "[9, 1]", "less than"]),
@@ -206,6 +212,12 @@ def test_text_that_is_no_set_is_refused_with_line_and_column(refusal, write, tex
         assert message.startswith(f"small.yaml:{place}: ")
     for word in words:
         assert word in message
+
+
+def test_one_fault_is_one_line(refusal, write):
+    for given, instead in (("sigma: 0.1", "sigma: [0.1, -2]"), ("[5, 6]", "[5, .nan]"), ("[40, 20]", "[40]")):
+        write("small.yaml", SET.replace(given, instead))
+        assert "\n" not in refusal("validate", "small.yaml")
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from algorithms.scoring import Criterion
 from scenarios.model import (
     LARGEST_SEED,
     MOST_PLOTS,
+    MOST_TRIALS,
     CartesianSensor,
     Experiment,
     MatchCriterion,
@@ -197,6 +198,8 @@ def test_the_numeric_fields_of_a_scenario_can_be_swept():
         (MatchCriterion, {"rho": 1, "theta_deg": 91}),
         (Experiment, {"name": "e"}),
         (Experiment, {"name": "e", "criterion": {"rho": 1}, "trials": 0}),
+        (Experiment, {"name": "e", "criterion": {"rho": 1}, "trials": MOST_TRIALS + 1}),
+        (Experiment, {"name": "e", "criterion": {"rho": 1}, "control": "no"}),
         (Experiment, {"name": "e", "criterion": {"rho": 1}, "seed": LARGEST_SEED + 1}),
         (Experiment, {"name": "e", "criterion": {"rho": 1}, "seed": -1}),
         (Experiment, {"name": "e", "criterion": {"rho": 1}, "scenarios": []}),
@@ -224,6 +227,7 @@ def test_what_is_not_allowed(model, given):
     [
         {"scans": 0},
         {"scans": 5.0},
+        {"scans": 100_001},
         {"interval": 0},
         {"interval": -4},
         {"interval": math.nan},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect
 from functools import lru_cache
 
 import numpy as np
@@ -50,13 +51,16 @@ def flattened(shown: Levels) -> tuple[Levels, Levels]:
     Mostly they stay as they are. Where noise leaves too few neighbours alike, the lower levels
     fall together, no more of them than need be: the peaks keep theirs.
     """
-    table = FLATTENINGS[0]
-    sampled = _pairs(shown, SAMPLED)
-    for table in FLATTENINGS:
-        if not _is_long(table[sampled]):
-            found: Levels = table[shown]
-            if not _is_long(_pairs(found)):
-                break
+    every, sampled = _pairs(shown), _pairs(shown, SAMPLED)
+    if np.count_nonzero(_begins(_joined(every))) <= SEGMENTS_PER_CELL * every[..., 0].size:
+        # So few cells differ from the one before that there is nothing to join.
+        return shown, FLATTENINGS[0]
+    # The sampled rows tell where to begin; all of them whether it is enough.
+    first = bisect(range(len(FLATTENINGS)), -1, key=lambda index: -_is_long(FLATTENINGS[index][sampled]))
+    last = len(FLATTENINGS) - 1
+    table = next(
+        (table for table in FLATTENINGS[first:last] if not _is_long(table[every])), FLATTENINGS[last]
+    )
     return table[shown], table
 
 
@@ -180,12 +184,17 @@ def _is_long(pairs: Levels) -> bool:
     return len(_runs(joined)) > SEGMENTS_PER_CELL * joined.size
 
 
+def _begins(joined: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Return which cells begin a row or differ from the one before."""
+    begins = np.ones(joined.shape, np.bool_)
+    begins[:, 1:] = joined[:, 1:] != joined[:, :-1]
+    return begins
+
+
 def _runs(joined: NDArray[np.int32]) -> list[tuple[int, int, int]]:
     """Return beginning, ground and ink of the longest runs of at most two colours, the greater the ink."""
     width = joined.shape[1]
-    begins = np.ones(joined.shape, np.bool_)
-    begins[:, 1:] = joined[:, 1:] != joined[:, :-1]
-    places = np.flatnonzero(begins)
+    places = np.flatnonzero(_begins(joined))
     found: list[tuple[int, int, int]] = []
     # `start` < 0: no run is open; `one` = `other`: it has room for a second colour.
     start, one, other, row_end = -1, 0, 0, 0

@@ -74,7 +74,7 @@ class ListTable(Widget):
         self._editor: CellEditor | None = None
         self._new_row: int | None = None
         self._table = CellTable()
-        self._empty = Static("", classes="list--empty", markup=False)
+        self._empty = Static(f"no {within(field.label)} yet; a adds one", classes="list--empty", markup=False)
         self._message = Static("", classes="list--message", markup=False)
 
     @property
@@ -244,7 +244,6 @@ class ListTable(Widget):
         if self._new_row is not None and self._new_row < len(rows):
             self._table.move_cursor(row=self._new_row, column=0, animate=False)
         self._new_row = None
-        self._empty.update(Content(f"no {self.field.label.lower()} yet; a adds one"))
         self._empty.display = not rows
 
     def _value_at(self, place: Coordinate) -> Any:

@@ -87,12 +87,9 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
     @property
     def is_sound(self) -> bool:
         """Whether all that is typed is in effect: nothing is unreadable, and nothing was refused."""
-        readable = not any(isinstance(field.meaning, Unreadable) for field in self._fields.values())
-        return (
-            readable
-            and not self._negotiation.refused
-            and all(table.is_sound for table in self._tables.values())
-        )
+        if self._negotiation.refused or not all(table.is_sound for table in self._tables.values()):
+            return False
+        return not any(isinstance(field.meaning, Unreadable) for field in self._fields.values())
 
     def compose(self) -> ComposeResult:
         yield self._top
@@ -134,6 +131,11 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
         else:
             self._rebuild()
         self._say(None)
+        for typed, value in list(self._negotiation.refused.items()):
+            field = self.field(typed)
+            if field is None or field.meaning != value:
+                # Another value was set outside in the meantime, and took the place of what was typed.
+                self._negotiation.forget(typed)
         for asked in self._negotiation.taken(model, path, is_changed=is_changed):
             self._ask(asked)
 
@@ -153,18 +155,24 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
         if instead is not None:
             self._ask(instead)
 
+    def revert(self) -> None:
+        """Show what is in effect in place of what is typed and is not."""
+        self._asked = Negotiation()
+        for field in self._fields.values():
+            if field.check_action("revert", ()):
+                field.action_revert()
+        for table in self._tables.values():
+            table.action_cancel()
+        self._say(None)
+
     def focus_field(self, path: Path) -> None:
         """Put the cursor into the field at a path, or into the table that it lies in."""
         for length in range(len(path), len(self._path), -1):
             found = self.field(path[:length]) or self.table(path[:length])
-            inner = (
-                next((child for child in found.walk_children(Widget) if child.can_focus), None)
-                if found
-                else None
-            )
-            if inner is not None:
-                inner.focus()
-                return
+            for inner in found.walk_children(Widget) if found else ():
+                if inner.can_focus:
+                    inner.focus()
+                    return
 
     @on(Input.Submitted)
     def _submitted(self, event: Input.Submitted) -> None:

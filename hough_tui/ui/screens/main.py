@@ -128,6 +128,16 @@ class MainScreen(Screen[None]):
             if hasattr(view, "set_runnable"):
                 view.set_runnable(reason)
 
+    def take_back_unsound(self) -> bool:
+        """Put back what is in effect where something is typed that is not; return whether there was such."""
+        unsound = [
+            form for view in self._views.values() for form in view.query("ModelForm") if not form.is_sound
+        ]
+        for form in unsound:
+            form.revert()
+        self.show_soundness()
+        return bool(unsound)
+
     def why_not_runnable(self) -> str | None:
         """Return why nothing may run or be saved, in words; None where all is well."""
         for name, view in self._views.items():

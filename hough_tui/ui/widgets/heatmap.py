@@ -49,6 +49,7 @@ class Heatmap(Chart):
         Binding("plus,equals_sign", "zoom(1)", "Zoom in", show=False, id="heatmap.zoom-in"),
         Binding("minus", "zoom(-1)", "Zoom out", show=False, id="heatmap.zoom-out"),
         Binding("0", "fit", "Fit", show=False, id="heatmap.fit"),
+        Binding("f", "fit_votes", "Fit to votes", show=False, id="heatmap.fit-votes"),
         Binding("p", "next_peak(1)", "Next peak", id="heatmap.next-peak"),
         Binding("P", "next_peak(-1)", "Previous peak", show=False, id="heatmap.previous-peak"),
         Binding("enter", "choose", "Choose cell", id="heatmap.choose"),
@@ -185,6 +186,11 @@ class Heatmap(Chart):
         row, column = self._cursor
         self.zoom(KEY_ZOOM**steps, column + 0.5, row + 0.5)
         self._follow()
+
+    def action_fit_votes(self) -> None:
+        """Show the columns of ρ that have votes, and nothing beside them."""
+        if not self._scene.is_empty:
+            self.look_at(self._scene.occupied())
 
     def action_next_peak(self, step: int) -> None:
         if self._scene.is_empty:

@@ -102,6 +102,15 @@ class HeatmapScene:
         rows, columns = self.shape
         return Limits(0.0, max(1.0, columns), max(1.0, rows), 0.0)
 
+    def occupied(self) -> Limits:
+        """Return limits with every cell in view that exceeds the least, and a little room beside ρ."""
+        (columns,) = np.nonzero((self.comparable > self.extremes[0]).any(axis=0))
+        left, right, bottom, top = self.home()
+        if not len(columns):
+            return Limits(left, right, bottom, top)
+        room = max(1.0, 0.02 * (columns[-1] - columns[0]))
+        return Limits(max(left, columns[0] - room), min(right, columns[-1] + 1.0 + room), bottom, top)
+
     def axes(self, limits: Limits) -> tuple[Axis, Axis]:
         """Return the axes of ρ and θ of a part."""
         across = Axis(

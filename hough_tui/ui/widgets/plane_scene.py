@@ -18,11 +18,16 @@ from hough_tui.ui.drawing.viewport import Limits, Viewport
 Array = NDArray[np.float64]
 Words = list[tuple[str, Style | None]]
 
-STATES = ("found", "duplicate", "false", "unknown")
-"""States of tracks, in the order of the legend."""
-
 MARKS = {"found": "○", "duplicate": "◇", "false": "×", "unknown": "□"}
 """Characters at the plots of tracks: their states are told apart without colour."""
+
+NAMES = {
+    "found": ("found", "found"),
+    "duplicate": ("duplicate", "dup."),
+    "false": ("false", "false"),
+    "unknown": ("tracks", "tracks"),
+}
+"""Long and short names of the states in the legend."""
 
 LIT_MARK, CURSOR_MARK = "●", "◆"
 
@@ -251,29 +256,24 @@ def _labelled(canvas: Canvas, tracks: Sequence[PlaneTrack], chosen: int | None) 
 def legend(scene: PlaneScene, colours: Palette, width: int) -> Words:
     """Return what the marks mean and how many there are of each, in so many columns if possible."""
     targets = int(scene.is_target.sum())
+    clutter = "plots" if scene.origin is None else "clutter"
+    # Mark, style, number, long and short name.
     entries = [
-        (
-            "·",
-            ink(colours.clutter[-1], bold=True),
-            len(scene.position) - targets,
-            "plots" if scene.origin is None else "clutter",
-        ),
-        ("▪", ink(colours.target[-1]), targets, "of targets"),
-        ("╌", ink(colours.truth), len(scene.truth), "true"),
+        ("·", ink(colours.clutter[-1], bold=True), len(scene.position) - targets, clutter, clutter),
+        ("▪", ink(colours.target[-1]), targets, "of targets", "target"),
+        ("╌", ink(colours.truth), len(scene.truth), "true", "true"),
     ]
-    for state in STATES:
+    for state, mark in MARKS.items():
         count = sum((track.state if track.state in MARKS else "unknown") == state for track in scene.tracks)
-        entries.append(
-            (MARKS[state], ink(colours.track(state)), count, "tracks" if state == "unknown" else state)
-        )
+        entries.append((mark, ink(colours.track(state)), count, *NAMES[state]))
     muted = ink(colours.muted)
-    shown = [entry for entry in entries if entry[2] or entry[0] == "·"]
     words: Words = []
-    for between, with_name in (("   ", True), (" ", True), ("  ", False)):
+    for between, name in (("   ", 3), ("  ", 4), (" ", 4), ("  ", None)):
         words = []
-        for mark, style, count, name in shown:
-            words += [(f"{between if words else ''}{mark} ", style)]
-            words += [(f"{count:,} {name}" if with_name else f"{count:,}", muted)]
+        for entry in entries:
+            if entry[2] or entry is entries[0]:
+                words.append((f"{between if words else ''}{entry[0]} ", entry[1]))
+                words.append((f"{entry[2]:,} {entry[name]}" if name else f"{entry[2]:,}", muted))
         if sum(len(text) for text, _ in words) <= width:
             break
     return words

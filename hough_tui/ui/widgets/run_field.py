@@ -2,31 +2,22 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
-from textual import events
-from textual.binding import Binding, BindingType
-from textual.widgets import Input
-
 from algorithms.parameters import FieldError, replaced
+from hough_tui.ui.forms.controls import NumberInput
 from hough_tui.ui.forms.fields import described
-from hough_tui.ui.forms.numbers import Sort, Unreadable, Wanted, read
+from hough_tui.ui.forms.numbers import Unreadable, Wanted, read
 from scenarios.model import Experiment
 
-WHOLE = Wanted(Sort.WHOLE, optional=True)
+WHOLE = Wanted(whole=True, optional=True)
 
 
-class RunField(Input):
+class RunField(NumberInput):
     """Text that is read as a whole number; empty leaves the experiment's own.
 
     Parameters
     ----------
     field : name of the field of an experiment
     """
-
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("f9", "explain_field", "Explain the field", id="run-field.explain", show=False),
-    ]
 
     def __init__(self, field: str) -> None:
         super().__init__(id=f"run-{field}", compact=True, select_on_focus=True)
@@ -46,16 +37,8 @@ class RunField(Input):
             return None, str(error)
         return found, None
 
-    def action_explain_field(self) -> None:
+    def action_explain(self) -> None:
         """Say what the field is, and what it takes."""
         (field,) = (known for known in described(Experiment) if known.path == (self.field,))
-        text = f"{field.help}. A {field.bounds or 'whole number'}; empty: as the experiment has it."
+        text = f"{field.help}: {field.bounds or 'a whole number'}. Empty: as the experiment has it."
         self.notify(text, title=field.label, markup=False)
-
-    async def _on_key(self, event: events.Key) -> None:
-        if event.character == "?":  # no number has one
-            event.stop()
-            event.prevent_default()
-            self.action_explain_field()
-            return
-        await super()._on_key(event)

@@ -62,4 +62,5 @@ def trial_chart(
     figure.scatter(line_x.tolist(), line_y.tolist(), marker="━", color=MEAN)
     shown = "" if step == 1 else f", one of {step:,} drawn"
     title = f"{called}: false % by trial{shown} · ━ mean so far, in the end {means[-1]:.1f}"
-    return f"{title}\n{figure.build()}"
+    text = figure.build().rstrip("\n")
+    return f"{title}\n{text}"

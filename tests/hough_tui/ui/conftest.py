@@ -8,7 +8,9 @@ from typing import Any
 
 import pytest
 from rich.segment import Segment
+from textual import events
 from textual.css.query import NoMatches
+from textual.keys import _character_to_key
 from textual.pilot import Pilot
 from textual.widget import Widget
 from textual.widgets import Input, TabbedContent
@@ -21,7 +23,7 @@ from hough_tui.ui.forms.value_field import ValueField
 PATIENCE = 12.0
 """Seconds until a wait is given up: kernels may have to be compiled on a busy machine."""
 
-Path_ = tuple[str | int, ...]
+Place = tuple[str | int, ...]
 Condition = Callable[[], Any]
 
 
@@ -40,6 +42,8 @@ class User:
                     return found
             except (NoMatches, AttributeError, IndexError):
                 pass
+            if self.app._exception is not None:
+                raise self.app._exception
             if time.monotonic() > limit:
                 raise AssertionError(f"in vain, before this screen:\n{self.text}")
             await self.pilot.pause(0.02)
@@ -51,21 +55,39 @@ class User:
     async def screen(self, name: str) -> None:
         """Wait until a screen lies on top."""
         await self.until(lambda: type(self.app.screen).__name__ == name)
-        await self.pilot.pause()
+        await self.settle()
+
+    async def settle(self) -> None:
+        """Wait until what was sent has been dealt with, and what came of it too.
+
+        The pilot waits until the process is idle, which it is not while trials run.
+        """
+        for _ in range(3):
+            await self.pilot._wait_for_screen()
+            await self.pilot.pause(0)
 
     async def press(self, *keys: str) -> None:
-        await self.pilot.press(*keys)
-        await self.pilot.pause()
+        for key in keys:
+            name = _character_to_key(key) if len(key) == 1 and not key.isalnum() else key
+            event = events.Key(name, key if len(key) == 1 else None)
+            event.set_sender(self.app)
+            self.app._driver.send_message(event)
+            await self.settle()
+
+    async def click(self, selector: str) -> None:
+        """Click on a widget of the screen on top."""
+        await self.pilot.click(selector)
+        await self.settle()
 
     async def type(self, text: str) -> None:
         """Type text, character by character."""
-        await self.press(*(text.replace("\n", "")))
+        await self.press(*text)
 
     async def go(self, key: str) -> Any:
         """Go to a view by its key, and return it when it is ready."""
         await self.press(key)
         await self.until(lambda: self.tab in self.app.screen._views)
-        await self.pilot.pause()
+        await self.settle()
         return self.view
 
     async def warm(self) -> None:
@@ -73,7 +95,7 @@ class User:
         await self.until(lambda: self.app.workspace)
         await self.until(lambda: not [worker for worker in self.app.workers if worker.is_running])
         await self.until(lambda: self.app.screen_stack[0].query("SetTree"))
-        await self.pilot.pause()
+        await self.settle()
 
     @property
     def main(self) -> Any:
@@ -96,7 +118,7 @@ class User:
         assert found is not None, path
         return found
 
-    async def fill(self, path: Path_, text: str) -> ValueField:
+    async def fill(self, path: Place, text: str) -> ValueField:
         """Type text into a field of the form that is seen, in place of what is there."""
         self.form.focus_field(path)
         line = self.field(*path).query_one(Input)
@@ -150,12 +172,13 @@ def drive(home: Path) -> Callable[..., HoughApp]:
         *,
         size: tuple[int, int] = (120, 40),
         config: Config | None = None,
+        opens: bool = True,
     ) -> HoughApp:
         async def work() -> HoughApp:
             app = HoughApp(set_name, config or Config())
             async with app.run_test(size=size, notifications=True) as pilot:
                 user = User(app, pilot)
-                if set_name is not None:
+                if set_name is not None and opens:
                     await user.warm()
                 await journey(user)
             return app

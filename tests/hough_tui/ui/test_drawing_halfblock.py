@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import io
+import itertools
 
 import numpy as np
 import pytest
@@ -58,9 +59,9 @@ def slow_pooled(values, viewport):
                     for row in inside(top, bottom, values.shape[0])
                     for column in inside(left, right, values.shape[1])
                 )
-                for left, right in zip(column_edges, column_edges[1:], strict=False)
+                for left, right in itertools.pairwise(column_edges)
             ]
-            for top, bottom in zip(row_edges, row_edges[1:], strict=False)
+            for top, bottom in itertools.pairwise(row_edges)
         ]
     )
 

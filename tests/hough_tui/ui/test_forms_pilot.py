@@ -105,6 +105,18 @@ def test_a_value_set_elsewhere_leaves_text_that_means_it():
     assert app.workspace.value(STEP) == 0.65
 
 
+def test_a_value_set_elsewhere_takes_the_place_of_one_that_was_refused():
+    async def journey(app, pilot):
+        field = await typed(app, pilot, STEP, "-1")
+        app.workspace.set(STEP, 0.7)
+        app.show()
+        await pilot.pause()
+        assert (field.text, field.problem) == ("0.7", None)
+        assert app.form.is_sound
+
+    assert drive(SEQUENTIAL, journey).workspace.value(STEP) == 0.7
+
+
 def test_escape_puts_back_the_value_in_effect():
     async def journey(app, pilot):
         field = await typed(app, pilot, STEP, "x")

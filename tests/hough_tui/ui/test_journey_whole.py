@@ -22,7 +22,7 @@ async def seen_accumulator(user):
         return panel._seen is not None and panel._seen.parameters.grid.rho_step == wanted
 
     await user.until(is_drawn)
-    await user.pilot.pause()
+    await user.settle()
     heatmap = view.query_one(Heatmap)
     assert heatmap.region.height > 5
     return user.drawn(heatmap)
@@ -37,7 +37,7 @@ async def edit_step(user, text):
 async def run_experiment(user, trials):
     """Run the experiment that is chosen, with so many trials, to its end."""
     view = await user.go("f6")
-    await user.pilot.click("#run-trials")
+    await user.click("#run-trials")
     await user.press("home", "shift+end", "delete")
     await user.type(str(trials))
     await user.press("f5")
@@ -123,7 +123,7 @@ def test_first_run_edit_look_run_worst_trial_save_and_reopen(drive, home):
         await user.go("f3")
         assert user.field(*STEP).text == "0.3"
         await user.go("f7")
-        await user.sees("1 run ·", "course-report      6      40     7  tables")
+        await user.sees("1 run ·", "course-report     6      40     7  tables")
 
     drive(second, "mine.yaml", size=(160, 48))
     assert path.read_text(encoding="utf-8").count("rho_step: 0.3") == 1

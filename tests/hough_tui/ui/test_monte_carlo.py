@@ -121,7 +121,8 @@ def test_a_run_fills_the_table_and_is_kept():
         assert "trials" not in [column.name for column in user.grid._shown]
         (name,) = FolderStore().names()
         assert user.app.finished == [name]
-        assert f"360 trials in" in user.line and name in user.line
+        assert "360 trials in" in user.line
+        assert name in user.line
         rows = FolderStore().document(name)["rows"]
         assert user.column("success %") == [f"{100 * row['success_rate']:.1f}" for row in rows]
         assert user.column("false %") == [f"{100 * row['false_track_ratio']:.1f}" for row in rows]
@@ -167,10 +168,12 @@ def test_a_wrong_number_runs_nothing(text):
     async def journey(user):
         user.view.query_one("#run-trials", Input).value = text
         await user.pilot.pause()
-        assert user.line.startswith("trials: ") and user.view.query_one(RunLine).has_class("-problem")
+        assert user.line.startswith("trials: ")
+        assert user.view.query_one(RunLine).has_class("-problem")
         await user.pilot.press("r")
         await user.pilot.pause()
-        assert not user.view.is_at_work and user.view._live is None
+        assert not user.view.is_at_work
+        assert user.view._live is None
         await user.run("3")
         assert user.grid.row_count == 6
 
@@ -182,7 +185,8 @@ def test_a_wrong_form_runs_nothing():
         user.view.set_runnable("scans: 0 is given")
         await user.pilot.press("r")
         await user.pilot.pause()
-        assert not user.view.is_at_work and "scans: 0 is given" in user.line
+        assert not user.view.is_at_work
+        assert "scans: 0 is given" in user.line
         user.view.set_runnable(None)
         await user.pilot.pause()
         assert "r runs it" in user.line
@@ -194,7 +198,8 @@ def test_a_set_without_experiments_says_so():
     async def journey(user):
         await user.pilot.press("r")
         await user.pilot.pause()
-        assert "no experiments" in user.line and not user.view.is_at_work
+        assert "no experiments" in user.line
+        assert not user.view.is_at_work
 
     drive(journey, load_set("course-report").model_copy(update={"experiments": []}))
 
@@ -219,8 +224,10 @@ def test_cancelling_leaves_what_was_found(key):
         await user.until(lambda: not user.view.is_at_work)
         assert "cancelled after" in user.line
         assert user.grid.row_count == 6
-        assert user.column("trials")[-1] == "0" and user.column("success %")[-1] == "–"
-        assert FolderStore().names() == [] and user.app.finished == []
+        assert user.column("trials")[-1] == "0"
+        assert user.column("success %")[-1] == "–"
+        assert FolderStore().names() == []
+        assert user.app.finished == []
         assert user.app.progress[-1] is None
         await user.pilot.press("w")
         await user.until(lambda: user.app.finished)
@@ -279,8 +286,10 @@ def test_rows_keep_their_identity_when_they_are_sorted_and_while_they_fill():
         await user.pilot.press("S")
         assert user.column("success %") == sorted(success, key=float, reverse=True)
         assert (user.grid.chosen_index, user.grid.cursor_row) == (3, 5)
-        rows = [{**row, "success_rate": 0.5 if index == 3 else row["success_rate"]}
-                for index, row in enumerate(user.view._live.rows)]
+        rows = [
+            {**row, "success_rate": 0.5 if index == 3 else row["success_rate"]}
+            for index, row in enumerate(user.view._live.rows)
+        ]
         user.panel.fill(rows)
         await user.pilot.pause()
         assert user.grid.chosen_index == 3
@@ -306,7 +315,9 @@ def test_the_worst_trial_of_a_row_is_opened():
         (opened,) = user.app.opened
         cell = user.view._live.job.plan.cells[3]
         assert (opened.scenario, opened.entry, opened.parameters) == (
-            cell.scenario, cell.entry, cell.parameters
+            cell.scenario,
+            cell.entry,
+            cell.parameters,
         )
         assert (opened.seed, opened.trial, opened.scenario.scans) == (7, int(worst), 5)
         assert not isinstance(user.app.screen, TrialsScreen)
@@ -326,7 +337,8 @@ def test_a_full_disk_is_said_and_the_results_stay(monkeypatch):
         screen = await user.screen(Question)
         assert "No space left on device" in texts(screen)
         await user.pilot.press("escape")
-        assert user.grid.row_count == 6 and user.app.finished == []
+        assert user.grid.row_count == 6
+        assert user.app.finished == []
         monkeypatch.setattr(np, "savez_compressed", write)
         await user.pilot.press("w")
         await user.until(lambda: user.app.finished == FolderStore().names() != [])
@@ -355,7 +367,8 @@ def test_a_defect_of_the_engine_is_said(monkeypatch):
         assert "RuntimeError: no such luck" in texts(await user.screen(Question))
         await user.pilot.press("escape")
         monkeypatch.undo()
-        assert not user.view.is_at_work and user.app.progress[-1] is None
+        assert not user.view.is_at_work
+        assert user.app.progress[-1] is None
 
     drive(journey)
 
@@ -376,23 +389,28 @@ def test_wide_and_narrow_show_all():
     async def journey(user):
         await user.run("20")
         rates, chart = user.panel.query_one("#rates"), user.panel.query_one("#chart")
-        assert rates.display and chart.display
+        assert rates.display
+        assert chart.display
         await user.pilot.resize_terminal(80, 24)
         await user.pilot.pause()
-        assert rates.display and not chart.display
+        assert rates.display
+        assert not chart.display
         await user.pilot.press("c")
         await user.pilot.pause()
-        assert chart.display and not rates.display
+        assert chart.display
+        assert not rates.display
         plot = user.panel.query_one(RatePlot)
         assert plot.has_focus
         await user.until(lambda: any("standard" in line.text for line in plot._drawn))
-        assert plot.size.width >= 70 and plot.size.height >= 15
+        assert plot.size.width >= 70
+        assert plot.size.height >= 15
         await user.pilot.press("c")
         await user.pilot.pause()
         assert user.grid.has_focus
         await user.pilot.resize_terminal(140, 24)
         await user.pilot.pause()
-        assert rates.display and chart.display
+        assert rates.display
+        assert chart.display
         assert chart.region.x >= rates.region.right
         await user.pilot.resize_terminal(200, 60)
         await user.pilot.pause()

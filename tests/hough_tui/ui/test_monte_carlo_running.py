@@ -26,10 +26,12 @@ def given():
 def test_a_run_tells_its_beginning_its_rows_and_its_end(given):
     told = []
     Running(Asked(given, ("modified",), trials=300), told.append).work()
-    assert isinstance(told[0], Started) and isinstance(told[-1], Ended)
+    assert isinstance(told[0], Started)
+    assert isinstance(told[-1], Ended)
     assert all(isinstance(event, Filled) for event in told[1:-1])
     ended = told[-1]
-    assert ended.is_complete and ended.problem is None
+    assert ended.is_complete
+    assert ended.problem is None
     assert FolderStore().names() == [ended.kept_as]
     assert [row["trials"] for row in ended.rows] == [300] * 3
     assert list(ended.rows) == FolderStore().document(ended.kept_as)["rows"]

@@ -1,0 +1,133 @@
+"""Look: what the three panels tell of one another."""
+
+import numpy as np
+import pytest
+from textual.widgets import Static
+
+from algorithms.hough.inspection import columns_of, voters
+from hough_tui.ui.widgets.heatmap import Heatmap
+from hough_tui.ui.widgets.plane import Plane
+from hough_tui.ui.widgets.track_grid import TrackGrid
+
+
+async def look(user):
+    """Open Look, and return its panel when a trial is seen."""
+    view = await user.go("f4")
+    panel = view.query_one("LookPanel")
+    await user.until(lambda: panel._seen)
+    await user.settle()
+    return panel
+
+
+def test_a_peak_is_explained_by_its_plots_and_its_neighbourhood(drive):
+    async def journey(user):
+        panel = await look(user)
+        heatmap, plane = panel.query_one(Heatmap), panel.query_one(Plane)
+        heatmap.focus()
+        before = user.drawn(plane)
+        await user.press("p")
+        seen = panel._seen
+        row, column = heatmap.cursor
+        votes = int(seen.accumulator.votes[row, column])
+        assert votes == seen.accumulator.votes.max()
+        # The plots that voted for the cell light up in the plane.
+        lit = voters(seen.picture.plots.position, seen.accumulator.grid, row, column)
+        assert len(lit) == votes
+        await user.until(lambda: np.array_equal(plane._lit, lit))
+        await user.until(lambda: user.drawn(plane) != before)
+        await user.sees(f"{votes} votes")
+
+        await user.press("enter")
+        await user.screen("WhyPeak")
+        await user.sees(f"Cell ({row}, {column})", f"{votes} votes", f"the {votes} plots that voted")
+        parts = list(user.app.screen.query(Static))
+        plots = parts[-1].content
+        assert plots.row_count == votes
+        scans = [str(cell) for cell in plots.columns[0].cells]
+        assert scans == [str(scan) for scan in seen.picture.plots.scan[lit]]
+        around = parts[-2].content
+        assert (around.row_count, len(around.columns)) == (9, 10)
+        assert list(around.columns[5].cells)[4].plain == str(votes)
+        await user.press("escape")
+        await user.screen("MainScreen")
+        assert heatmap.cursor == (row, column)
+
+    drive(journey, "course-report", size=(160, 48))
+
+
+def test_choosing_a_track_marks_its_cell_and_its_plots(drive):
+    async def journey(user):
+        panel = await look(user)
+        heatmap, plane, grid = (panel.query_one(kind) for kind in (Heatmap, Plane, TrackGrid))
+        seen = panel._seen
+        cells = seen.accumulator.grid
+        grid.focus()
+        for index in (1, 2, 3):
+            await user.press("j")
+            wanted = cells.cell(float(seen.tracks.theta[index]), float(seen.tracks.rho[index]))
+            await user.until(lambda wanted=wanted: heatmap.cursor == wanted)
+            lit = seen.tracks.plots[index]
+            await user.until(lambda lit=lit: np.array_equal(np.sort(plane._lit), np.sort(lit)))
+            assert plane._track == index
+        # In the plane as well.
+        plane.focus()
+        await user.press("t")
+        wanted = cells.cell(float(seen.tracks.theta[4]), float(seen.tracks.rho[4]))
+        await user.until(lambda: heatmap.cursor == wanted)
+
+    drive(journey, "course-report", size=(160, 48))
+
+
+def test_choosing_a_plot_draws_its_sinusoid_over_the_accumulator(drive):
+    async def journey(user):
+        panel = await look(user)
+        heatmap, plane = panel.query_one(Heatmap), panel.query_one(Plane)
+        before = user.drawn(heatmap)
+        plane.focus()
+        await user.press("n", "enter")
+        await user.until(lambda: heatmap._trace is not None)
+        seen, chosen = panel._seen, plane.cursor
+        grid = seen.accumulator.grid
+        curve = columns_of(seen.picture.plots.position[[chosen]], grid, np.arange(grid.theta_bins))[:, 0]
+        assert np.array_equal(heatmap._trace, np.where(curve < grid.rho_bins, curve, -1))
+        await user.until(lambda: user.drawn(heatmap) != before)
+
+    drive(journey, "course-report", size=(160, 48))
+
+
+@pytest.mark.parametrize("size", [(160, 48), (80, 24)], ids=["wide", "narrow"])
+def test_initiators_and_trials_are_gone_through(drive, size):
+    async def journey(user):
+        panel = await look(user)
+        await user.sees("standard on two-crossing, trial 0: 6 tracks")
+        await user.press("]")
+        await user.sees("standard on two-crossing, trial 1:")
+        await user.press("[", "[")
+        await user.sees("standard on two-crossing, trial 0: 6 tracks")
+        await user.press("i")
+        await user.sees("sequential on two-crossing, trial 0: ")
+        await user.press("I", "s")
+        await user.sees("standard on three-scans, trial 0: ")
+        await user.press("i", "i")
+        await user.sees("modified on three-scans, trial 0: ")
+        assert panel._seen.accumulator is None or "no accumulator" not in user.text
+
+    drive(journey, "course-report", size=size)
+
+
+def test_two_initiators_stand_side_by_side_on_the_same_draw(drive):
+    async def journey(user):
+        await look(user)
+        await user.press("b")
+        await user.sees("standard on two-crossing, trial 0", "sequential on two-crossing, trial 0")
+        first, second = user.view.query("LookPanel")
+        await user.until(lambda: second._seen is not None)
+        assert first._seen.picture is second._seen.picture
+        assert first.region.width > 60
+        assert second.region.width > 60
+        await user.press("]")
+        await user.sees("standard on two-crossing, trial 1", "sequential on two-crossing, trial 1")
+        await user.press("b")
+        await user.until(lambda: len(user.view.query("LookPanel")) == 1)
+
+    drive(journey, "course-report", size=(200, 60))
