@@ -1,4 +1,4 @@
-"""The one exception that stands for a wrong request."""
+"""What stands for a wrong request, and for work that failed."""
 
 from __future__ import annotations
 
@@ -8,4 +8,11 @@ class RequestError(ValueError):
 
     The message says what was given, where (file, line, field), what is allowed and what
     to do. Commands print it alone, without a traceback, and exit with status 2.
+    """
+
+
+class WorkFailedError(RuntimeError):
+    """The request was right, and the work failed; the message is for people.
+
+    Commands print it alone and exit with status 1.
     """

@@ -246,7 +246,7 @@ _ALLOWED = {
     "dict_type": "a mapping of names to values",
     "model_type": "a mapping of names to values",
     "model_attributes_type": "a mapping of names to values",
-    "union_tag_not_found": "a mapping with {discriminator}",
+    "union_tag_not_found": "a mapping that says which kind it is",
     "none_required": "null",
     "int_parsing_size": "a smaller whole number",
 }
@@ -302,19 +302,20 @@ def _numbered(value: Any) -> list[tuple[tuple[int, ...], Any]]:
     return [((i,), element) for i, element in enumerate(value)] if isinstance(value, list | tuple) else []
 
 
-def replaced(model: Model, path: Path, value: Any) -> Model:
-    """Return a model with the value at a path replaced, validated anew.
+def replaced(model: Model, values: Mapping[Path, Any]) -> Model:
+    """Return a model with the values at some paths replaced together, validated anew.
 
     Raises
     ------
     FieldError
-        Where the value is not allowed there.
+        Where a value is not allowed at its place.
     """
     data = model.model_dump(mode="json")
-    here: Any = data
-    for part in path[:-1]:
-        here = here[part]
-    here[path[-1]] = value
+    for path, value in values.items():
+        here: Any = data
+        for part in path[:-1]:
+            here = here[part]
+        here[path[-1]] = value
     try:
         return type(model).model_validate(data)
     except ValidationError as error:

@@ -72,6 +72,18 @@ class TrackChunk:
     votes_outside: NDArray[np.int64]
     plots: NDArray[np.int64] | None = None
 
+    def strongest(self, most: int) -> TrackChunk:
+        """Return the tracks with the highest scores of a chunk of one trial, the highest first."""
+        order = np.argsort(-self.score, kind="stable")[:most]
+        return TrackChunk(
+            np.array([0, len(order)], dtype=np.int64),
+            self.theta[order],
+            self.rho[order],
+            self.score[order],
+            self.votes_outside,
+            None if self.plots is None else self.plots[order],
+        )
+
     @property
     def counts(self) -> NDArray[np.int64]:
         """Number of tracks of each trial."""

@@ -5,8 +5,10 @@ Heavy modules are imported inside the commands, so that `--help` answers at once
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import os
+import signal
 import sys
 from collections.abc import Callable
 from enum import StrEnum
@@ -60,15 +62,17 @@ def reported(command: Callable[..., None]) -> Callable[..., None]:
 
     @functools.wraps(command)
     def run(*args: Any, **kwargs: Any) -> None:
-        from algorithms.errors import RequestError
+        from algorithms.errors import RequestError, WorkFailedError
 
         try:
             command(*args, **kwargs)
             sys.stdout.flush()
         except RequestError as error:
             stop(str(error), WRONG_REQUEST)
-        except KeyboardInterrupt:
-            stop("interrupted", INTERRUPTED)
+        except WorkFailedError as error:
+            stop(str(error), FAILED)
+        except KeyboardInterrupt as error:
+            stop("interrupted", getattr(error, "status", INTERRUPTED))
         except BrokenPipeError:
             # Who reads the output has closed it; the interpreter must not stumble over it again.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -94,7 +98,9 @@ def counted(number: int, what: str) -> str:
 
 def tell(message: str) -> None:
     """Say something on standard error."""
-    print(f"hough-tui: {message}", file=sys.stderr)
+    # A terminal that has gone away must not keep the work from being ended in order.
+    with contextlib.suppress(OSError):
+        print(f"hough-tui: {message}", file=sys.stderr, flush=True)
 
 
 def refuse(condition: bool, message: str) -> None:
@@ -136,10 +142,21 @@ def announce_compilation() -> None:
         tell("compiling the kernels, once for this version: up to 20 s")
 
 
+class EndedError(KeyboardInterrupt):
+    """The process was asked to end, or has lost its terminal."""
+
+    def __init__(self, number: int, _: object) -> None:
+        super().__init__()
+        self.status = 128 + number
+        raise self
+
+
 def finish(job: Job, description: str) -> None:
-    """Wait for a job with a progress bar on standard error; end it cleanly where the user interrupts."""
+    """Wait for a job with a progress bar on standard error; end it in order where the process must end."""
     from hough_tui.reports.progress import ProgressBar
 
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, EndedError)
     progress = job.progress
     try:
         with ProgressBar(description) as bar:
@@ -152,7 +169,9 @@ def finish(job: Job, description: str) -> None:
                 )
     except KeyboardInterrupt:
         job.cancel()
-        job.wait()
+        # What a worker fails with while everything is being ended is no news.
+        with contextlib.suppress(Exception):
+            job.wait()
         raise
 
 
@@ -182,7 +201,6 @@ def batch(
         as_json and (plot or str(csv) == "-"),
         "--json prints one document and nothing else: leave out --plot and --csv -",
     )
-    announce_compilation()
     from hough_tui.experiments.engine import Job
     from hough_tui.experiments.plan import plan_run
     from hough_tui.experiments.results import result
@@ -191,6 +209,7 @@ def batch(
     from scenarios.files import load_set
 
     plan = plan_run([load_set(name) for name in sets], experiments=experiment or (), trials=trials, seed=seed)
+    announce_compilation()
     job = Job(plan, workers)
     try:
         finish(job, ", ".join(sets))
@@ -288,7 +307,6 @@ def initiate(
 ) -> None:
     """Run an initiator on recorded plots and print its tracks."""
     refuse(as_json and plot, "--json prints one document and nothing else: leave out --plot")
-    announce_compilation()
     from algorithms.initiators.registry import initiator
     from hough_tui.experiments import initiation
     from hough_tui.experiments.options import known_sensor, window
@@ -305,6 +323,7 @@ def initiate(
     spacing = interval if interval is not None else base and base.interval
     recording = parse_plots(text, str(plots), interval=spacing, scans=window(scans))
     context, assumed = initiation.context_of(recording, known, base, window(scans))
+    announce_compilation()
     found = initiation.initiate(recording, algorithm, parameters, context, assumed, most)
     if accumulator is not None:
         refuse(found.accumulator is None, f"--accumulator: {name} has no accumulator")
@@ -354,7 +373,6 @@ def simulate(
     ] = None,
 ) -> None:
     """Write the plots of one trial as CSV, with the target that each came from and its true position."""
-    announce_compilation()
     from hough_tui.experiments.choice import changed, chosen_scenario, seed_of
     from scenarios.atomic import replace_file
     from scenarios.files import load_set
@@ -365,6 +383,7 @@ def simulate(
     chosen = chosen_scenario(given, scenario)
     seed = seed_of(given, chosen) if seed is None else seed
     chosen = changed(chosen, assignments or ())
+    announce_compilation()
     text = write_plots(draw(World.of(chosen), seed, trial), chosen)
     if output is None:
         sys.stdout.write(text)
@@ -384,17 +403,17 @@ def reproduce(
     as_json: JsonOption = False,
 ) -> None:
     """Print published tables beside what is measured here, with 95 % intervals."""
+    from hough_tui.experiments.engine import Job
     from hough_tui.experiments.published import TABLES, compare, plan_table
     from hough_tui.experiments.published import published_table as find_table
-
-    announce_compilation()
-    from hough_tui.experiments.engine import Job
     from hough_tui.reports.documents import json_text
     from hough_tui.reports.tables import published_table
 
     documents = []
     for chosen in [find_table(table)] if table else list(TABLES.values()):
-        job = Job(plan_table(chosen, trials, seed), workers)
+        plan = plan_table(chosen, trials, seed)
+        announce_compilation()
+        job = Job(plan, workers)
         finish(job, chosen.name)
         documents.append(compare(chosen, job))
     if as_json:

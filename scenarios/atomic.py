@@ -10,13 +10,25 @@ from pathlib import Path
 def replace_file(path: Path, content: str | bytes) -> None:
     """Write a file such that a reader, or a crash, finds either the old content or the new.
 
+    What is no regular file, a device or a pipe, is written to as it is.
+
     Raises
     ------
     OSError
-        Where the folder cannot be written; the old file is untouched.
+        Where the file cannot be written, with its name; the old file is untouched.
     """
-    path = path.resolve()  # a link stays a link: its target is what is replaced
     data = content.encode() if isinstance(content, str) else content
+    try:
+        if path.exists() and not path.is_file():
+            path.write_bytes(data)
+        else:
+            # A link stays a link: its target is what is replaced.
+            _replace(path.resolve(), data)
+    except OSError as error:
+        raise type(error)(error.errno, error.strerror, str(path)) from None
+
+
+def _replace(path: Path, data: bytes) -> None:
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(handle, "wb") as file:

@@ -130,8 +130,27 @@ def save_set(given: ScenarioSet, path: Path) -> None:
         Where the existing file cannot be read as YAML, or the folder cannot be written.
     """
     data = set_data(given)
-    text = rewrite(read_text(path, LARGEST_FILE), data) if path.exists() else write(data)
+    if path.is_file():
+        old = read_text(path, LARGEST_FILE)
+        text = rewrite(old, _as_written(data, read(old, str(path)).data), str(path))
+    else:
+        text = write(_as_written(data, None))
     try:
         replace_file(path, text)
     except OSError as error:
         raise RequestError(f"{path}: cannot be written: {error.strerror or error}") from None
+
+
+def _as_written(data: Any, old: Any) -> Any:
+    """Return data with numbers as the file has them where they are equal, 4 and not 4.0; new ones are short."""
+    if isinstance(data, dict):
+        before = old if isinstance(old, dict) else {}
+        return {key: _as_written(value, before.get(key)) for key, value in data.items()}
+    if isinstance(data, list):
+        items = old if isinstance(old, list) and len(old) == len(data) else [None] * len(data)
+        return [_as_written(value, item) for value, item in zip(data, items, strict=True)]
+    if isinstance(data, bool) or not isinstance(data, int | float):
+        return data
+    if isinstance(old, int | float) and not isinstance(old, bool) and old == data:
+        return old
+    return int(data) if isinstance(data, float) and data.is_integer() and abs(data) < 1e15 else data

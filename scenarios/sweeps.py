@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -15,7 +16,6 @@ from algorithms.parameters import (
     Problem,
     numeric_paths,
     replaced,
-    unknown,
 )
 from scenarios.model import Experiment, InitiatorEntry, Scenario, ScenarioSet
 
@@ -64,6 +64,11 @@ def points(given: ScenarioSet, experiment: Experiment) -> Iterator[Point]:
         )
     for scenario, entry in itertools.product(scenarios, entries):
         places = [place(key, scenario, entries) for key in experiment.sweep]
+        for key, found in zip(experiment.sweep, places, strict=True):
+            first = list(experiment.sweep)[places.index(found)]
+            if first != key:
+                message = f"'{key}' is the field that '{first}' is; sweep it once"
+                raise FieldError(Problem(("sweep", key), message, on_key=True))
         for combination in itertools.product(*experiment.sweep.values()):
             yield _point(scenario, entry, experiment, places, combination)
 
@@ -75,20 +80,38 @@ def _point(
     places: Sequence[tuple[str, Path]],
     values: Sequence[int | float],
 ) -> Point:
-    for (key, given), (part, path), value in zip(experiment.sweep.items(), places, values, strict=True):
-        try:
-            if part == "scenario":
-                scenario = replaced(scenario, path, value)
-            else:
-                entry = replaced(entry, path, value)
-        except FieldError as error:
-            index = given.index(value)
-            raise FieldError(Problem(("sweep", key, index), str(error))) from None
+    parts: dict[str, dict[Path, int | float]] = {"scenario": {}, "initiator": {}}
+    for (part, path), value in zip(places, values, strict=True):
+        parts[part][path] = value
+    keys = dict(zip(places, experiment.sweep, strict=True))
+    try:
+        part = "scenario"
+        scenario = replaced(scenario, parts[part])
+        part = "initiator"
+        entry = replaced(entry, parts[part])
+    except FieldError as error:
+        raise _placed(error, part, keys, experiment, values) from None
     try:
         parameters = entry.parameters.resolved(scenario.context)
     except RequestError as error:
         raise FieldError(Problem((), f"initiator {entry.name} on {scenario.name}: {error}")) from None
     return Point(scenario, entry, parameters, dict(zip(experiment.sweep, values, strict=True)))
+
+
+def _placed(
+    error: FieldError,
+    part: str,
+    keys: dict[tuple[str, Path], str],
+    experiment: Experiment,
+    values: Sequence[int | float],
+) -> FieldError:
+    """Return a refused value with its place among the swept values."""
+    where = error.problem.path
+    for (swept, path), key in keys.items():
+        if swept == part and (where[: len(path)] == path or path[: len(where)] == where):
+            index = experiment.sweep[key].index(values[list(experiment.sweep).index(key)])
+            return FieldError(Problem(("sweep", key, index), str(error)))
+    return FieldError(Problem(("sweep",), str(error)))
 
 
 def place(key: str, scenario: Scenario, entries: Sequence[InitiatorEntry]) -> tuple[str, Path]:
@@ -106,22 +129,26 @@ def place(key: str, scenario: Scenario, entries: Sequence[InitiatorEntry]) -> tu
     known = {"scenario": list(numeric_paths(scenario)), "initiator": _common(entries)}
     if wanted[0] in PARTS and len(wanted) > 1:
         part, rest = str(wanted[0]), wanted[1:]
-        found = [(part, path) for path in known[part] if rest in (path, _named(path))]
+        matches = [(part, path, path) for path in known[part]]
     else:
-        found = [
-            (part, path)
-            for part in PARTS
-            for path in known[part]
-            if wanted in (path[-len(wanted) :], _named(path)[-len(wanted) :])
-        ]
-        found = [match for match in found if match[1] == wanted] or found
+        rest = wanted
+        matches = [(part, path, path[-len(rest) :]) for part in PARTS for path in known[part]]
+    # A path as it stands goes before one with its indices left out, the whole of it before its end.
+    found = [(part, path) for part, path, end in matches if end == rest]
+    found = found or [
+        (part, path) for part, path, _ in matches if _is_named(path, rest, whole=rest != wanted)
+    ]
+    found = [match for match in found if match[1] == rest] or found
     if len(found) == 1:
         return found[0]
     if found:
         names = ", ".join(written(part, path) for part, path in found)
         raise FieldError(Problem(("sweep", key), f"'{key}' may mean {names}; write one of them", on_key=True))
     every = [written(part, path) for part in PARTS for path in known[part]]
-    message = unknown(key, every, "numeric field")
+    ends = [str(path[-1]) for part in PARTS for path in known[part] if isinstance(path[-1], str)]
+    near = difflib.get_close_matches(key, [*every, *ends], n=1, cutoff=0.5)
+    hint = f"; did you mean '{near[0]}'?" if near else ""
+    message = f"there is no numeric field '{key}'{hint} (known: {', '.join(every)})"
     if len(entries) > 1 and wanted[0] != "scenario":
         message += "; a swept parameter must belong to every initiator of the experiment"
     raise FieldError(Problem(("sweep", key), message, on_key=True))
@@ -138,8 +165,15 @@ def written(part: str, path: Path) -> str:
     return ".".join(map(str, (part, *path)))
 
 
-def _named(path: Path) -> Path:
-    return tuple(name for name in path if isinstance(name, str))
+def _is_named(path: Path, wanted: Path, *, whole: bool) -> bool:
+    """Return whether a path, or its end, is the wanted one with indices left out."""
+    left = list(path)
+    for part in reversed(wanted):
+        while left and left[-1] != part and isinstance(left[-1], int):
+            left.pop()
+        if not left or left.pop() != part:
+            return False
+    return not whole or not any(isinstance(name, str) for name in left)
 
 
 def _common(entries: Iterable[InitiatorEntry]) -> list[Path]:

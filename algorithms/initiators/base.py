@@ -5,6 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar
 
+import numpy as np
+
 from algorithms.association import with_states
 from algorithms.context import Context
 from algorithms.hough.voting import Accumulator
@@ -44,6 +46,11 @@ class Initiator(ABC):
         parameters : resolved parameters, of the type that the initiator declares
         """
 
+    def strongest(self, plots: Plots, context: Context, parameters: Any, most: int) -> tuple[Tracks, int]:
+        """Return the tracks with the highest scores, the highest first, and how many there are in all."""
+        tracks = self.initiate(plots, context, parameters)
+        return tracks.chosen(np.argsort(-tracks.score, kind="stable")[:most]), len(tracks)
+
     def accumulator(self, plots: Plots, context: Context, parameters: Any) -> Accumulator | None:
         """Return the votes of one batch; None for an initiator that has no accumulator."""
         return None
@@ -67,3 +74,10 @@ class ChunkInitiator(Initiator):
         chunk = plots.chunk()
         found = self.initiate_chunk(chunk, context, parameters)
         return with_states(plots, self.associate_chunk(chunk, found, context, parameters))
+
+    def strongest(self, plots: Plots, context: Context, parameters: Any, most: int) -> tuple[Tracks, int]:
+        """Return the tracks with the highest scores; the others are not associated with plots."""
+        chunk = plots.chunk()
+        found = self.initiate_chunk(chunk, context, parameters)
+        chosen = self.associate_chunk(chunk, found.strongest(most), context, parameters)
+        return with_states(plots, chosen), len(found.theta)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from algorithms.errors import RequestError
-from algorithms.parameters import FieldError, replaced, unknown
+from algorithms.parameters import FieldError, Path, replaced, unknown
 from scenarios.marked_yaml import read
 from scenarios.model import Scenario, ScenarioSet
 from scenarios.sweeps import place
@@ -37,6 +38,7 @@ def changed(scenario: Scenario, assignments: Sequence[str]) -> Scenario:
     RequestError
         Where a key names no numeric field, or the value is not allowed.
     """
+    values: dict[Path, Any] = {}
     for assignment in assignments:
         key, equals, value = assignment.partition("=")
         if not equals:
@@ -45,11 +47,11 @@ def changed(scenario: Scenario, assignments: Sequence[str]) -> Scenario:
             _, path = place(key, scenario, [])
         except FieldError as error:
             raise RequestError(f"--set {assignment}: {error.problem.message}") from None
-        try:
-            scenario = replaced(scenario, path, read(value, f"--set {key}").data)
-        except FieldError as error:
-            raise RequestError(f"--set {assignment}: {error}") from None
-    return scenario
+        values[path] = read(value, f"--set {key}").data
+    try:
+        return replaced(scenario, values)
+    except FieldError as error:
+        raise RequestError(f"--set {' '.join(assignments)}: {error}") from None
 
 
 def seed_of(given: ScenarioSet, scenario: Scenario) -> int:

@@ -12,19 +12,20 @@ import os
 import threading
 import time
 from collections.abc import Iterator
-from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures import wait as wait_for
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.errors import WorkFailedError
 from algorithms.initiators.base import ChunkInitiator
 from algorithms.plots import PlotChunk
 from algorithms.tracks import TrackChunk
 from hough_tui.experiments.chunks import run_chunk
 from hough_tui.experiments.columns import TrialColumns
-from hough_tui.experiments.plain import initiate_trials
+from hough_tui.experiments.plain import begin_worker, initiate_trials
 from hough_tui.experiments.plan import Cell, Plan, SharedDraws, SharedTracks
 from hough_tui.experiments.tallies import Row, tally
 from scenarios.simulate import World
@@ -160,7 +161,12 @@ class Job:
     def _plain(self, shared: SharedDraws, run: SharedTracks, chunk: PlotChunk) -> tuple[TrackChunk, float]:
         assert self._processes is not None
         given = (run.entry.initiator, run.parameters, shared.scenario.context, chunk)
-        return self._processes.submit(initiate_trials, *given).result()
+        try:
+            return self._processes.submit(initiate_trials, *given).result()
+        except BrokenExecutor:
+            raise WorkFailedError(
+                f"initiator {run.entry.initiator}: its worker process died; mend the plug-in"
+            ) from None
 
 
 def available_workers() -> int:
@@ -185,4 +191,5 @@ def _processes(plan: Plan, workers: int) -> ProcessPoolExecutor | None:
     if all(isinstance(run.entry.algorithm, ChunkInitiator) for run in runs):
         return None
     # A forked child would inherit the state of threads that it does not have.
-    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
+    spawned = multiprocessing.get_context("spawn")
+    return ProcessPoolExecutor(workers, mp_context=spawned, initializer=begin_worker)

@@ -187,19 +187,18 @@ def initiate(
     # Compiled code is loaded here, so that the time given below is the algorithm's own.
     algorithm.initiate(_no_plots(plots), context, resolved)
     began = time.perf_counter()
-    tracks = algorithm.initiate(plots, context, resolved)
+    tracks, total = algorithm.strongest(plots, context, resolved, most)
     seconds = time.perf_counter() - began
     accumulator = algorithm.accumulator(plots, context, resolved)
-    order = np.argsort(-tracks.score, kind="stable")[:most]
     return Initiation(
         algorithm,
         resolved,
         context,
         assumed,
         recording,
-        tracks.chosen(order),
+        tracks,
         accumulator,
-        len(tracks),
+        total,
         seconds,
     )
 

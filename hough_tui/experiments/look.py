@@ -17,6 +17,9 @@ from hough_tui.experiments.plain import gathered
 from scenarios.model import InitiatorEntry, MatchCriterion, Scenario
 from scenarios.simulate import Draw, World, draw, truth
 
+MOST_TRACKS = 500
+"""How many tracks of a trial are looked at; nobody looks at more, and each must find its plots."""
+
 
 @dataclass(frozen=True, slots=True)
 class Picture:
@@ -46,7 +49,8 @@ class TrialLook:
     ----------
     picture : the draw
     entry, parameters : the initiator; its parameters are resolved
-    tracks : strongest first
+    tracks : the strongest, `MOST_TRACKS` at most, strongest first
+    total : number of all tracks
     state : int8 (tracks,), `FALSE`, `FINDER` or `DUPLICATE`; None without a criterion
     accumulator : the votes; None for an initiator that has none
     seconds : of the initiator
@@ -56,6 +60,7 @@ class TrialLook:
     entry: InitiatorEntry
     parameters: Parameters
     tracks: Tracks
+    total: int
     state: NDArray[np.int8] | None
     accumulator: Accumulator | None
     seconds: float
@@ -95,13 +100,11 @@ def look(
     """
     algorithm, context = entry.algorithm, seen.scenario.context
     began = time.perf_counter()
-    tracks = algorithm.initiate(seen.plots, context, parameters)
+    tracks, total = algorithm.strongest(seen.plots, context, parameters, MOST_TRACKS)
     seconds = time.perf_counter() - began
-    order = np.argsort(-tracks.score, kind="stable")
-    tracks = tracks.chosen(order)
     state = None if criterion is None else _states(seen, tracks, criterion)
     accumulator = algorithm.accumulator(seen.plots, context, parameters)
-    return TrialLook(seen, entry, parameters, tracks, state, accumulator, seconds)
+    return TrialLook(seen, entry, parameters, tracks, total, state, accumulator, seconds)
 
 
 def _states(seen: Picture, tracks: Tracks, criterion: MatchCriterion) -> NDArray[np.int8]:

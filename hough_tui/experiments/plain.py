@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
+import signal
+import threading
 import time
 
 import numpy as np
 
 from algorithms.context import Context
+from algorithms.errors import RequestError
 from algorithms.initiators.registry import initiator
 from algorithms.parameters import Parameters
 from algorithms.plots import PlotChunk
@@ -26,8 +31,47 @@ def initiate_trials(
     """
     algorithm = initiator(name)
     began = time.thread_time()
-    found = [algorithm.initiate(chunk.trial(index), context, parameters) for index in range(chunk.trials)]
+    found = []
+    for index in range(chunk.trials):
+        plots = chunk.trial(index)
+        tracks = algorithm.initiate(plots, context, parameters)
+        check(tracks, len(plots), name)
+        found.append(tracks)
     return gathered(found), time.thread_time() - began
+
+
+def check(tracks: Tracks, plots: int, name: str) -> None:
+    """Refuse tracks that kernels could not take.
+
+    Raises
+    ------
+    RequestError
+        Where columns differ in length, or a track names a plot that there is not.
+    """
+    lengths = {len(column) for column in (tracks.theta, tracks.rho, tracks.score, tracks.plots)}
+    if len(lengths) != 1:
+        raise RequestError(
+            f"initiator {name}: its tracks have columns of different lengths; mend the plug-in"
+        )
+    for rows in tracks.plots:
+        if len(rows) and not 0 <= int(np.min(rows)) <= int(np.max(rows)) < plots:
+            raise RequestError(
+                f"initiator {name}: a track names plot {int(np.max(rows))}, and the batch has {plots} plots; "
+                "mend the plug-in"
+            )
+
+
+def begin_worker() -> None:
+    """Prepare a worker process: it ends when its parent does, and leaves interrupts to it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def gathered(trials: list[Tracks]) -> TrackChunk:

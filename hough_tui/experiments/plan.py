@@ -118,6 +118,10 @@ def plan_run(
     RequestError
         Where there is no experiment to run, or none of a given name.
     """
+    names = [given.name for given in sets]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise RequestError(f"two sets are named '{twice}': their rows could not be told apart; rename one")
     overrides = {key: value for key, value in (("trials", trials), ("seed", seed)) if value is not None}
     known = [experiment.name for given in sets for experiment in given.experiments]
     for name in experiments:

@@ -119,7 +119,8 @@ class FolderStore(RunStore):
         if not self.folder.is_dir():
             return []
         found = [path.name for path in self.folder.iterdir() if (path / "result.json").is_file()]
-        return sorted((name for name in found if not name.startswith(".")), reverse=True)
+        whole = [name for name in found if not name.startswith(".")]
+        return sorted(whole, key=lambda name: (self.folder / name).stat().st_mtime_ns, reverse=True)
 
     def document(self, name: str) -> dict[str, Any]:
         """Return the result document of a run.

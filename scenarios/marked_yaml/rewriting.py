@@ -23,7 +23,7 @@ from scenarios.marked_yaml.writing import (
 )
 
 
-def rewrite(text: str, data: Any) -> str:
+def rewrite(text: str, data: Any, source: str = "text") -> str:
     """Change a document so that reading it gives `data`, and leave the rest of its text as it is.
 
     Keys stay in the order of the text, new ones follow. List items are recognised by equality, by their
@@ -35,7 +35,7 @@ def rewrite(text: str, data: Any) -> str:
     """
     data = plain_data(data)
     spelled_out = text
-    for start, end, value in reversed(Reader(text, "text").aliases):
+    for start, end, value in reversed(Reader(text, source).aliases):
         spelled_out = spelled_out[:start] + flow_text(value) + spelled_out[end:]
     # An alias repeats what its anchor says, so a small change can change too much, or cut off the anchor;
     # with every alias spelled out it does neither.

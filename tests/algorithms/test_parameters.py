@@ -281,11 +281,11 @@ def test_unknown_says_when_nothing_is_known():
 
 def test_replacing_a_value_validates_it_anew():
     model = Drawing(shapes=[Square(side=1.0)])
-    found = replaced(model, ("shapes", 0, "corner", 1), 7)
+    found = replaced(model, {("shapes", 0, "corner", 1): 7})
     assert found.shapes[0].corner == (0.0, 7.0)
     assert model.shapes[0].corner == (0.0, 0.0)
     with pytest.raises(FieldError) as error:
-        replaced(model, ("shapes", 0, "side"), -1)
+        replaced(model, {("shapes", 0, "side"): -1})
     assert error.value.problem.path == ("shapes", 0, "side")
     assert str(error.value) == "shapes[0].side: -1 is given; it must be greater than 0"
 

@@ -177,7 +177,9 @@ class LookPanel(Widget):
 def caption(seen: TrialLook) -> str:
     """Return one line that says what is seen."""
     scenario = seen.picture.scenario
-    text = f"{seen.entry.name} on {scenario.name}, trial {seen.picture.trial}: {len(seen.tracks)} tracks"
+    text = f"{seen.entry.name} on {scenario.name}, trial {seen.picture.trial}: {seen.total:,} tracks"
+    if seen.total > len(seen.tracks):
+        text += f", of which the {len(seen.tracks)} strongest are shown"
     if seen.state is not None:
         counts = [(name, int((seen.state == state).sum())) for state, name in STATES.items()]
         text += (
