@@ -142,7 +142,7 @@ def save_set(given: ScenarioSet, path: Path) -> None:
 
 
 def _as_written(data: Any, old: Any) -> Any:
-    """Return data with numbers as the file has them where they are equal, 4 and not 4.0; new ones are short."""
+    """Return data with numbers as the file has them where they are equal: 4, not 4.0; new ones short."""
     if isinstance(data, dict):
         before = old if isinstance(old, dict) else {}
         return {key: _as_written(value, before.get(key)) for key, value in data.items()}

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from algorithms.parameters import FieldError
+from scenarios.files import load_set
 from scenarios.model import Experiment, ScenarioSet
 from scenarios.sweeps import MOST_POINTS, parts_of, place, points
 
@@ -264,3 +265,34 @@ def test_more_points_than_the_limit_are_refused_before_any_is_made():
     problem = refusal({"scans": values, "interval": values})
     assert problem.path == ("sweep",)
     assert f"40,000 points are given; the limit is {MOST_POINTS:,}" in problem.message
+
+
+def test_fields_that_depend_on_one_another_are_put_in_together():
+    given = load_set("course-text")
+    scenario = given.scenarios[0].name
+    experiment = given.experiments[0].model_copy(
+        update={"sweep": {"region.x.0": [200], "region.x.1": [300]}, "scenarios": [scenario]}
+    )
+    assert {point.scenario.region.x for point in points(given, experiment)} == {(200.0, 300.0)}
+
+
+def test_one_field_by_two_keys_is_refused():
+    given = load_set("course-text")
+    experiment = given.experiments[0].model_copy(update={"sweep": {"scans": [5], "scenario.scans": [6]}})
+    with pytest.raises(FieldError, match=r"'scenario\.scans' is the field that 'scans' is"):
+        list(points(given, experiment))
+
+
+def test_the_noise_of_both_axes_can_be_swept_where_each_has_its_own():
+    given = load_set("course-text")
+    sensor = given.scenarios[0].sensor.model_copy(update={"sigma": (0.1, 0.2)})
+    scenario = given.scenarios[0].model_copy(update={"sensor": sensor})
+    assert place("scenario.sensor.sigma", scenario, []) == ("scenario", ("sensor", "sigma"))
+    assert place("sigma", scenario, []) == ("scenario", ("sensor", "sigma"))
+    assert place("sigma.1", scenario, []) == ("scenario", ("sensor", "sigma", 1))
+
+
+def test_a_short_key_with_a_slip_is_shown_its_neighbour():
+    given = load_set("course-text")
+    with pytest.raises(FieldError, match="did you mean 'scans'"):
+        place("sacns", given.scenarios[0], [])

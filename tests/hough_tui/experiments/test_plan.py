@@ -69,3 +69,9 @@ def test_an_unknown_experiment_is_named_with_those_known(names, message):
 def test_more_memory_than_the_columns_may_take_is_refused():
     with pytest.raises(RequestError, match="GiB"):
         plan_run([load_set("course-report")], trials=10_000_000)
+
+
+def test_two_sets_of_one_name_are_refused():
+    given = load_set("course-report")
+    with pytest.raises(RequestError, match="two sets are named 'course-report'"):
+        plan_run([given, given])

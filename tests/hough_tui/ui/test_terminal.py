@@ -1,0 +1,234 @@
+"""The command in a real pseudo-terminal: how it begins, works, and leaves the terminal as it was."""
+
+import fcntl
+import json
+import os
+import re
+import select
+import signal
+import struct
+import subprocess
+import sys
+import termios
+import time
+from pathlib import Path
+
+import pytest
+
+PATIENCE = 60.0
+"""Seconds until a wait is given up."""
+
+TO_ALTERNATE, FROM_ALTERNATE = "\x1b[?1049h", "\x1b[?1049l"
+HIDE_CURSOR, SHOW_CURSOR = "\x1b[?25l", "\x1b[?25h"
+F6, CTRL_Q = {"xterm-256color": "\x1b[17~", "linux": "\x1b[17~"}, "\x11"
+
+COMMAND = [sys.executable, "-c", "from hough_tui.cli import main; main()"]
+PROJECT = Path(__file__).parents[3]
+
+
+class Terminal:
+    """A pseudo-terminal of 80 × 24 with the command in it, as its controlling terminal."""
+
+    def __init__(self, home: Path, term: str, *arguments: str) -> None:
+        self.home = home
+        self.master, self.slave = os.openpty()
+        fcntl.ioctl(self.slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+        self.before = termios.tcgetattr(self.slave)
+        self.output = b""
+        self.process = subprocess.Popen(
+            [*COMMAND, *arguments],
+            stdin=self.slave,
+            stdout=self.slave,
+            stderr=self.slave,
+            cwd=home,
+            env=environment(home, term),
+            start_new_session=True,
+            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
+        )
+
+    def __enter__(self) -> "Terminal":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+        for descriptor in (self.master, self.slave):
+            if descriptor >= 0:
+                os.close(descriptor)
+
+    def read(self, seconds: float = 0.05) -> None:
+        """Take what the command has written, and wait a moment for it."""
+        while select.select([self.master], [], [], seconds)[0]:
+            self.output += os.read(self.master, 65536)
+            seconds = 0.0
+
+    @property
+    def text(self) -> str:
+        """What was written, without what moves the cursor and colours it."""
+        written = self.output.decode("utf-8", "replace")
+        return re.sub(r"\x1b(\[[0-9;?<>=$ ]*[A-Za-z~]|\][^\x07\x1b]*(\x07|\x1b\\)|P[^\x1b]*\x1b\\|.)", "", written)
+
+    def until(self, words: str, since: int = 0) -> None:
+        """Wait until words have been written."""
+        limit = time.monotonic() + PATIENCE
+        while words not in self.text[since:]:
+            self.read()
+            assert self.process.poll() is None, f"ended with {self.process.returncode}:\n{self.text[-2000:]}"
+            assert time.monotonic() < limit, f"no '{words}' in:\n{self.text[since:][-4000:]}"
+
+    def press(self, keys: str) -> int:
+        """Send keys; return how much had been written before."""
+        self.read(0.0)
+        written = len(self.text)
+        os.write(self.master, keys.encode())
+        return written
+
+    def status(self) -> int:
+        """Wait until the command has ended, and return its exit status."""
+        limit = time.monotonic() + PATIENCE
+        while self.process.poll() is None:
+            self.read()
+            assert time.monotonic() < limit, f"it does not end:\n{self.text[-2000:]}"
+        self.read(0.0)
+        return self.process.returncode
+
+    def hang_up(self) -> None:
+        """Close the terminal, as a dropped connection does."""
+        os.close(self.slave)
+        os.close(self.master)
+        self.master = self.slave = -1
+
+
+def environment(home: Path, term: str) -> dict[str, str]:
+    kept = {key: value for key, value in os.environ.items() if not key.startswith(("TEXTUAL", "COLOR", "NO_"))}
+    kept.pop("COLUMNS", None)
+    kept.pop("LINES", None)
+    folders = {f"XDG_{name}_HOME": str(home / name.lower()) for name in ("DATA", "CONFIG", "STATE")}
+    return {**kept, **folders, "TERM": term, "LANG": "C.UTF-8", "PYTHONPATH": str(PROJECT)}
+
+
+def assert_restored(terminal: Terminal) -> None:
+    written = terminal.output.decode("utf-8", "replace")
+    assert written.count(TO_ALTERNATE) == 1
+    assert written.rindex(FROM_ALTERNATE) > written.rindex(TO_ALTERNATE)
+    assert written.rindex(SHOW_CURSOR) > written.rindex(HIDE_CURSOR)
+    # Neither mouse nor pasted text is told any more.
+    for mode in ("1000", "1003", "1006", "2004"):
+        on, off = f"\x1b[?{mode}h", f"\x1b[?{mode}l"
+        assert written.rfind(off) >= written.rfind(on), mode
+    assert termios.tcgetattr(terminal.slave) == terminal.before
+
+
+def edited(terminal: Terminal) -> None:
+    """Open the bundled set, type another number of scans, and wait until it is kept aside."""
+    terminal.until("two-crossing")
+    terminal.until("Interval")
+    # The form has its cursor in the number of scans when the view is asked for.
+    since = terminal.press("\x1bOQ")
+    time.sleep(0.3)
+    terminal.press("9")
+    terminal.until("changed", since)
+    limit = time.monotonic() + PATIENCE
+    while not kept_aside(terminal.home):
+        terminal.read()
+        assert time.monotonic() < limit
+
+
+def kept_aside(home: Path) -> list[Path]:
+    return list((home / "state" / "hough-tui" / "unsaved").glob("*.json"))
+
+
+@pytest.mark.parametrize("term", ["xterm-256color", "linux"])
+def test_start_open_run_and_quit_leave_the_terminal_as_it_was(tmp_path, term):
+    with Terminal(tmp_path, term) as terminal:
+        terminal.until("Choose a bundled set")
+        assert terminal.output.decode("utf-8", "replace").startswith(TO_ALTERNATE)
+        terminal.press("\r")
+        terminal.until("two-crossing")
+        since = terminal.press(F6[term])
+        terminal.until("6,000 trials", since)
+        since = terminal.press("r")
+        terminal.until("kept as", since)
+        terminal.press(CTRL_Q)
+        assert terminal.status() == 0
+        assert_restored(terminal)
+    (run,) = (tmp_path / "data" / "hough-tui" / "runs").iterdir()
+    document = json.loads((run / "result.json").read_text(encoding="utf-8"))
+    assert document["complete"]
+    assert [row["trials"] for row in document["rows"]] == [1000] * 6
+
+
+def test_termination_leaves_the_terminal_clean_and_the_work_aside(tmp_path):
+    with Terminal(tmp_path, "xterm-256color", "course-report") as terminal:
+        edited(terminal)
+        (kept,) = kept_aside(tmp_path)
+        kept.unlink()
+        terminal.process.send_signal(signal.SIGTERM)
+        assert terminal.status() == 143
+        assert_restored(terminal)
+        # It is written at the end too, not only a while after the last key.
+        (kept,) = kept_aside(tmp_path)
+        assert "scans: 9" in json.loads(kept.read_text(encoding="utf-8"))["set"]
+
+
+def test_a_hangup_signal_does_the_same(tmp_path):
+    with Terminal(tmp_path, "xterm-256color", "course-report") as terminal:
+        edited(terminal)
+        (kept,) = kept_aside(tmp_path)
+        kept.unlink()
+        terminal.process.send_signal(signal.SIGHUP)
+        assert terminal.status() == 129
+        assert_restored(terminal)
+        assert len(kept_aside(tmp_path)) == 1
+
+
+def test_a_terminal_that_is_closed_ends_it_with_the_work_aside(tmp_path):
+    with Terminal(tmp_path, "xterm-256color", "course-report") as terminal:
+        edited(terminal)
+        (kept,) = kept_aside(tmp_path)
+        kept.unlink()
+        terminal.hang_up()
+        assert terminal.process.wait(PATIENCE) == 129
+        assert len(kept_aside(tmp_path)) == 1
+
+
+def test_termination_during_a_run_ends_it(tmp_path):
+    with Terminal(tmp_path, "xterm-256color", "course-report") as terminal:
+        terminal.until("two-crossing")
+        since = terminal.press(F6["xterm-256color"])
+        terminal.until("6,000 trials", since)
+        since = terminal.press("r")
+        terminal.until("Cancel", since)
+        terminal.process.send_signal(signal.SIGTERM)
+        assert terminal.status() == 143
+        assert_restored(terminal)
+
+
+@pytest.mark.parametrize("arguments", [[], ["course-report"]], ids=["bare", "with a set"])
+def test_without_a_terminal_it_refuses_and_points_to_batch(tmp_path, arguments):
+    done = subprocess.run(
+        [*COMMAND, *arguments],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        env=environment(tmp_path, "xterm-256color"),
+        timeout=PATIENCE,
+    )
+    assert done.returncode == 2
+    assert done.stdout == ""
+    (line,) = done.stderr.splitlines()
+    assert "batch" in line
+    assert "terminal" in line
+
+
+def test_settings_that_are_wrong_end_it_before_the_screen_is_touched(tmp_path):
+    folder = tmp_path / "config" / "hough-tui"
+    folder.mkdir(parents=True)
+    (folder / "config.yaml").write_text("theme: nord\nkeyz: {}\n", encoding="utf-8")
+    with Terminal(tmp_path, "xterm-256color", "course-report") as terminal:
+        assert terminal.status() == 2
+        assert TO_ALTERNATE not in terminal.output.decode()
+        assert "config.yaml:2:1" in terminal.text
+        assert termios.tcgetattr(terminal.slave) == terminal.before
