@@ -47,6 +47,7 @@ class HoughApp(App[None]):
         super().__init__()
         self._set_name, self._config = set_name, config
         self.workspace: Workspace | None = None
+        self._unanswered: Unsaved | None = None
         self._main = MainScreen()
 
     def get_default_screen(self) -> Screen[Any]:
@@ -125,9 +126,11 @@ class HoughApp(App[None]):
         self._main.tell_state(None)
         self._main.show_workspace(self.workspace)
         self._warm()
+        self._unanswered = kept
         if kept is not None:
 
             def answer(key: str | None) -> None:
+                self._unanswered = None
                 if key == "recover" and self.workspace is not None:
                     self.workspace = self.workspace.recovered(kept.given)
                     self._main.show_workspace(self.workspace)
@@ -198,7 +201,8 @@ class HoughApp(App[None]):
         try:
             if workspace.is_changed:
                 keep_aside(workspace.given, workspace.path)
-            else:
+            elif self._unanswered is None:
+                # Work that is still being asked about is not forgotten, whatever ends the application.
                 forget(workspace.given.name, workspace.path)
         except OSError as error:
             self.notify(

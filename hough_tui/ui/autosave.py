@@ -76,7 +76,7 @@ def read_aside(file: Path) -> Unsaved | None:
     """Return work that was kept aside in a file; None where there is none, or it cannot be read."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
-        given = parse_set(content["set"], str(file))
-        return Unsaved(given, Path(content["path"]) if content["path"] else None, content["when"], file)
+        given = parse_set(str(content["set"]), str(file))
+        return Unsaved(given, Path(content["path"]) if content["path"] else None, str(content["when"]), file)
     except (OSError, ValueError, KeyError, TypeError, RequestError):
         return None

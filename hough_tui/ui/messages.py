@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from textual.message import Message
 
-from algorithms.parameters import Path
+if TYPE_CHECKING:
+    from algorithms.parameters import Path
 
 
 class FieldEdited(Message):

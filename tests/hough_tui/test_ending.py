@@ -19,7 +19,11 @@ BATCH = [sys.executable, "-c", "from hough_tui.cli import main; main()", "batch"
 def test_finished_trials_survive_an_ending_signal(number, status, tmp_path):
     given = {**os.environ, "XDG_DATA_HOME": str(tmp_path)}
     process = subprocess.Popen(
-        [*BATCH, "--experiment", "modified", "--trials", "3000000"], env=given, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [*BATCH, "--experiment", "modified", "--trials", "3000000"],
+        env=given,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     # Each thread's time stands in the process's own: it is at work once that goes on.
     deadline = time.monotonic() + 60

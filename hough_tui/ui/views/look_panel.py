@@ -68,6 +68,7 @@ class LookPanel(Widget):
     def __init__(self) -> None:
         super().__init__()
         self._seen: TrialLook | None = None
+        self._marked: tuple[int, int] | None = None
 
     def compose(self) -> ComposeResult:
         """Lay out the three panels."""
@@ -131,7 +132,9 @@ class LookPanel(Widget):
     @on(Heatmap.CellHighlighted)
     def _light_up_voters(self, event: Heatmap.CellHighlighted) -> None:
         event.stop()
-        if self._seen is not None and self._seen.accumulator is not None:
+        # The cell of a chosen track is told, too; the track's own plots stay lit then.
+        is_marked, self._marked = (event.row, event.column) == self._marked, None
+        if not is_marked and self._seen is not None and self._seen.accumulator is not None:
             position, grid = self._seen.picture.plots.position, self._seen.accumulator.grid
             self.query_one(Plane).highlight(voters(position, grid, event.row, event.column))
 
@@ -169,8 +172,10 @@ class LookPanel(Widget):
         plane.choose_track(index if index < MOST_DRAWN else None)
         if seen.accumulator is not None:
             cell = seen.accumulator.grid.cell(float(seen.tracks.theta[index]), float(seen.tracks.rho[index]))
-            if cell is not None:
-                self.query_one(Heatmap).move_cursor(*cell)
+            heatmap = self.query_one(Heatmap)
+            if cell is not None and cell != heatmap.cursor:
+                self._marked = cell
+                heatmap.move_cursor(*cell)
         plane.highlight(seen.tracks.plots[index])
 
 

@@ -20,7 +20,7 @@ class RatePlot(PlotextPlot, can_focus=True):
 
     DEFAULT_CSS = """
     RatePlot { background: $surface; padding: 0 1; }
-    RatePlot:focus { background: $surface-lighten-1; }
+    RatePlot:focus { background: $surface-lighten-1 50%; }
     """
 
     class Drawn(Message):

@@ -32,7 +32,7 @@ class RunField(NumberInput):
             return None, None
         try:
             for experiment in experiments:
-                replaced(experiment, (self.field,), found)
+                replaced(experiment, {(self.field,): found})
         except FieldError as error:
             return None, str(error)
         return found, None

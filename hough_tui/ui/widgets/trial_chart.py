@@ -60,7 +60,7 @@ def trial_chart(
     means = 100.0 * np.cumsum(ratio, dtype=np.float64)[places] / (places + 1)
     line_x, line_y = across.snapped(numbers[places].astype(np.float64)), up.snapped(means)
     figure.scatter(line_x.tolist(), line_y.tolist(), marker="━", color=MEAN)
-    shown = "" if step == 1 else f", one of {step:,} drawn"
-    title = f"{called}: false % by trial{shown} · ━ mean so far, in the end {means[-1]:.1f}"
+    shown = "" if step == 1 else f" · one of {step:,} drawn"
+    title = f"false % by trial · ━ mean so far, in the end {means[-1]:.1f} · {called}{shown}"
     text = figure.build().rstrip("\n")
     return f"{title}\n{text}"

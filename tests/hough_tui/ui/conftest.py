@@ -20,7 +20,7 @@ from hough_tui.ui.config import Config
 from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.forms.value_field import ValueField
 
-PATIENCE = 12.0
+PATIENCE = 20.0
 """Seconds until a wait is given up: kernels may have to be compiled on a busy machine."""
 
 Place = tuple[str | int, ...]
@@ -65,6 +65,17 @@ class User:
         for _ in range(3):
             await self.pilot._wait_for_screen()
             await self.pilot.pause(0)
+
+    async def still(self) -> str:
+        """Wait until nothing works behind the screen and it stays as it is; return what is on it."""
+        seen, times = "", 0
+        while times < 3:
+            await self.until(lambda: not [worker for worker in self.app.workers if worker.is_running])
+            await self.settle()
+            await self.pilot.pause(0.05)
+            times = times + 1 if self.text == seen else 0
+            seen = self.text
+        return seen
 
     async def press(self, *keys: str) -> None:
         for key in keys:
@@ -160,6 +171,12 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     work.mkdir()
     monkeypatch.chdir(work)
     return tmp_path
+
+
+@pytest.fixture
+def make_user() -> Callable[[Pilot[None]], User]:
+    """Return a function that puts a user before an application that runs already."""
+    return lambda pilot: User(pilot.app, pilot)
 
 
 @pytest.fixture

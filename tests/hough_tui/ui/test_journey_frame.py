@@ -39,8 +39,7 @@ def test_a_terminal_made_narrow_and_wide_again_shows_all_views_whole(drive):
     async def journey(user):
         await user.go("f4")
         await user.until(lambda: user.view.query_one("LookPanel")._seen)
-        await user.settle()
-        wide = user.text
+        wide = await user.still()
         assert visible(user, "Plane", "Heatmap", "TrackGrid") == ["Plane", "Heatmap", "TrackGrid"]
         assert user.main.query_one("#tree-place").region.width == 26
 
@@ -73,7 +72,7 @@ def test_a_terminal_made_narrow_and_wide_again_shows_all_views_whole(drive):
         await user.go("f4")
         await user.pilot.resize_terminal(200, 60)
         await user.until(lambda: user.app.size == (200, 60) and "scenarios" in user.text)
-        await user.until(lambda: user.text == wide)
+        assert await user.still() == wide
 
     drive(journey, "course-report", size=(200, 60))
 

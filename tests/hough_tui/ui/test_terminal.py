@@ -20,9 +20,11 @@ PATIENCE = 60.0
 
 TO_ALTERNATE, FROM_ALTERNATE = "\x1b[?1049h", "\x1b[?1049l"
 HIDE_CURSOR, SHOW_CURSOR = "\x1b[?25l", "\x1b[?25h"
-F6, CTRL_Q = {"xterm-256color": "\x1b[17~", "linux": "\x1b[17~"}, "\x11"
+F2, F6, CTRL_Q = "\x1bOQ", "\x1b[17~", "\x11"
 
-COMMAND = [sys.executable, "-c", "from hough_tui.cli import main; main()"]
+COMMAND = "from hough_tui.cli import main; main()"
+# The new session takes the terminal that it is given as its own, so that its end is told.
+IN_A_TERMINAL = f"import fcntl, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0); {COMMAND}"
 PROJECT = Path(__file__).parents[3]
 
 
@@ -36,14 +38,13 @@ class Terminal:
         self.before = termios.tcgetattr(self.slave)
         self.output = b""
         self.process = subprocess.Popen(
-            [*COMMAND, *arguments],
+            [sys.executable, "-c", IN_A_TERMINAL, *arguments],
             stdin=self.slave,
             stdout=self.slave,
             stderr=self.slave,
             cwd=home,
             env=environment(home, term),
             start_new_session=True,
-            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
         )
 
     def __enter__(self) -> "Terminal":
@@ -67,7 +68,9 @@ class Terminal:
     def text(self) -> str:
         """What was written, without what moves the cursor and colours it."""
         written = self.output.decode("utf-8", "replace")
-        return re.sub(r"\x1b(\[[0-9;?<>=$ ]*[A-Za-z~]|\][^\x07\x1b]*(\x07|\x1b\\)|P[^\x1b]*\x1b\\|.)", "", written)
+        return re.sub(
+            r"\x1b(\[[0-9;?<>=$ ]*[A-Za-z~]|\][^\x07\x1b]*(\x07|\x1b\\)|P[^\x1b]*\x1b\\|.)", "", written
+        )
 
     def until(self, words: str, since: int = 0) -> None:
         """Wait until words have been written."""
@@ -101,7 +104,9 @@ class Terminal:
 
 
 def environment(home: Path, term: str) -> dict[str, str]:
-    kept = {key: value for key, value in os.environ.items() if not key.startswith(("TEXTUAL", "COLOR", "NO_"))}
+    kept = {
+        key: value for key, value in os.environ.items() if not key.startswith(("TEXTUAL", "COLOR", "NO_"))
+    }
     kept.pop("COLUMNS", None)
     kept.pop("LINES", None)
     folders = {f"XDG_{name}_HOME": str(home / name.lower()) for name in ("DATA", "CONFIG", "STATE")}
@@ -125,9 +130,9 @@ def edited(terminal: Terminal) -> None:
     terminal.until("two-crossing")
     terminal.until("Interval")
     # The form has its cursor in the number of scans when the view is asked for.
-    since = terminal.press("\x1bOQ")
-    time.sleep(0.3)
-    terminal.press("9")
+    since = terminal.press(F2)
+    terminal.until("Explain", since)
+    since = terminal.press("9")
     terminal.until("changed", since)
     limit = time.monotonic() + PATIENCE
     while not kept_aside(terminal.home):
@@ -146,7 +151,7 @@ def test_start_open_run_and_quit_leave_the_terminal_as_it_was(tmp_path, term):
         assert terminal.output.decode("utf-8", "replace").startswith(TO_ALTERNATE)
         terminal.press("\r")
         terminal.until("two-crossing")
-        since = terminal.press(F6[term])
+        since = terminal.press(F6)
         terminal.until("6,000 trials", since)
         since = terminal.press("r")
         terminal.until("kept as", since)
@@ -196,7 +201,7 @@ def test_a_terminal_that_is_closed_ends_it_with_the_work_aside(tmp_path):
 def test_termination_during_a_run_ends_it(tmp_path):
     with Terminal(tmp_path, "xterm-256color", "course-report") as terminal:
         terminal.until("two-crossing")
-        since = terminal.press(F6["xterm-256color"])
+        since = terminal.press(F6)
         terminal.until("6,000 trials", since)
         since = terminal.press("r")
         terminal.until("Cancel", since)
@@ -208,7 +213,7 @@ def test_termination_during_a_run_ends_it(tmp_path):
 @pytest.mark.parametrize("arguments", [[], ["course-report"]], ids=["bare", "with a set"])
 def test_without_a_terminal_it_refuses_and_points_to_batch(tmp_path, arguments):
     done = subprocess.run(
-        [*COMMAND, *arguments],
+        [sys.executable, "-c", COMMAND, *arguments],
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,

@@ -1,0 +1,198 @@
+"""Make the pictures of the application, as SVG, from the application itself.
+
+Run it with `python docs/make_pictures.py`; the pictures come into `docs/pictures/`, or into the folder
+that is given. Each view is taken on a wide terminal (120 × 36) and on a narrow one (80 × 24).
+
+The same sources give the same pictures: draws come from seeds, and what tells of this machine or of
+this day (speeds, times, names of runs) is taken out. Settings, unsaved work and runs of the user are
+left alone.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+SIZES = {"": (120, 36), "-80x24": (80, 24)}
+MOST_BYTES = 400_000
+SET = "course-report"
+KEPT = ("20260105-090000-course-report-a1b2", "20260105-091500-course-report-c3d4")
+"""What the kept runs are called: their own names hold the time."""
+
+NO_PATHS = ("/home/", "/root", "/tmp", "/work", "/Users/")
+
+
+RUN = re.compile(
+    r'<text class="([^"]+)" x="([^"]+)" y="([^"]+)" textLength="[^"]+" clip-path="([^"]+)">([^<]+)</text>'
+)
+SPACE, WIDTH = "&#160;", 12.2
+
+
+async def settled(pilot: Any) -> None:
+    """Wait until nothing is worked out or moves any more."""
+    for _ in range(3):
+        await pilot.pause(0.25)
+        await pilot.app.workers.wait_for_complete()
+    await pilot.pause()
+
+
+async def press(pilot: Any, *keys: str) -> None:
+    """Press keys one by one, as a person does."""
+    for key in keys:
+        await pilot.press(key)
+        await settled(pilot)
+
+
+async def scenario(pilot: Any) -> None:
+    """The form of a scenario, and one draw of it where there is room."""
+    await press(pilot, "f2")
+
+
+async def initiator(pilot: Any) -> None:
+    """The parameters of an initiator."""
+    await press(pilot, "f3", "enter")
+
+
+async def look(pilot: Any) -> None:
+    """One trial; the second track is chosen in the table where there is room for it."""
+    await press(pilot, "f4")
+
+
+async def why(pilot: Any) -> None:
+    """Why the strongest cell is a peak."""
+    from hough_tui.ui.widgets.heatmap import Heatmap
+
+    await press(pilot, "f4")
+    heatmap = pilot.app.screen.query_one(Heatmap)
+    if not heatmap.size.area:
+        await press(pilot, "v")
+    heatmap.focus()
+    await press(pilot, "enter")
+
+
+async def monte_carlo(pilot: Any) -> None:
+    """The rates of a run, and its chart where there is room."""
+    from hough_tui.ui.widgets.rate_panel import RatePanel
+    from hough_tui.ui.widgets.run_line import RunLine
+
+    await press(pilot, "f6", "r")
+    panel, line = (pilot.app.screen.query_one(kind) for kind in (RatePanel, RunLine))
+    panel.fill([{**row, "seconds_per_trial": None} for row in panel.shown.rows])
+    line.tell(f"{sum(row['trials'] for row in panel.shown.rows):,} trials · kept")
+    await press(pilot, "down", "down")
+
+
+async def results(pilot: Any) -> None:
+    """The runs that were kept, and one of them where there is room."""
+    from hough_tui.ui.widgets.rate_panel import RatePanel
+
+    await press(pilot, "f7")
+    if pilot.app.size.width >= 100:
+        await press(pilot, "enter")
+        panel = pilot.app.screen.query_one(RatePanel)
+        panel.fill([{**row, "seconds_per_trial": None} for row in panel.shown.rows])
+        await settled(pilot)
+
+
+VIEWS: dict[str, Callable[[Any], Awaitable[None]]] = {
+    "scenario": scenario,
+    "initiator": initiator,
+    "look": look,
+    "why-this-peak": why,
+    "monte-carlo": monte_carlo,
+    "results": results,
+}
+
+
+def tidied(picture: str) -> str:
+    """Return a picture in which no text begins with spaces: some programs drop those, and all is shifted."""
+
+    def parts(found: re.Match[str]) -> str:
+        style, x, y, clip, text = found.groups()
+        text = text.replace(SPACE, "\xa0")
+        made = []
+        for word in re.finditer("[^\xa0]+(?:\xa0[^\xa0]+)*", text):
+            # An escaped character counts as one.
+            before = len(re.sub("&[^;]+;", "x", text[: word.start()]))
+            count = len(re.sub("&[^;]+;", "x", word[0]))
+            made.append(
+                f'<text class="{style}" x="{float(x) + WIDTH * before:.5g}" y="{y}" '
+                f'textLength="{WIDTH * count:.5g}" clip-path="{clip}">{word[0].replace(chr(160), SPACE)}</text>'
+            )
+        return "".join(made)
+
+    return RUN.sub(parts, picture)
+
+
+def keep_runs() -> None:
+    """Keep the runs that the pictures of the results show."""
+    from hough_tui.experiments.engine import Job
+    from hough_tui.experiments.plan import plan_run
+    from hough_tui.experiments.results import result
+    from hough_tui.experiments.store import FolderStore
+    from scenarios.files import load_set
+
+    for called, seed in zip(KEPT, (7, 8), strict=True):
+        job = Job(plan_run([load_set(SET)], experiments=["tables"], seed=seed))
+        job.wait()
+        store = FolderStore()
+        (store.folder / store.add(result(job))).rename(store.folder / called)
+
+
+def forget_new_runs() -> None:
+    """Remove the runs that a picture was taken of: no later one shall show them."""
+    from hough_tui.experiments.store import FolderStore
+
+    store = FolderStore()
+    for name in store.names():
+        if name not in KEPT:
+            shutil.rmtree(store.folder / name)
+
+
+async def taken(name: str, size: tuple[int, int]) -> str:
+    """Return the picture of a view."""
+    from hough_tui.ui.app import HoughApp
+    from hough_tui.ui.config import Config
+
+    app = HoughApp(SET, Config())
+    async with app.run_test(size=size) as pilot:
+        await settled(pilot)
+        await VIEWS[name](pilot)
+        await settled(pilot)
+        found = app.export_screenshot(title="hough-tui", simplify=True)
+        app.exit()
+    return found
+
+
+def main() -> None:
+    """Make all pictures."""
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).with_name("pictures")
+    folder = folder.resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as own:
+        for name in ("CONFIG", "STATE", "DATA"):
+            os.environ[f"XDG_{name}_HOME"] = own
+        os.environ |= {"TERM": "xterm-256color", "COLORTERM": "truecolor", "TEXTUAL_ANIMATIONS": "none"}
+        os.environ.pop("NO_COLOR", None)
+        keep_runs()
+        for name in VIEWS:
+            for suffix, size in SIZES.items():
+                text, path = tidied(asyncio.run(taken(name, size))), folder / f"{name}{suffix}.svg"
+                forget_new_runs()
+                wrong = [found for found in (*NO_PATHS, str(Path.home()), own) if found in text]
+                count = len(text.encode())
+                if wrong or count > MOST_BYTES:
+                    sys.exit(f"{path.name}: {count:,} bytes, with {', '.join(wrong) or 'no paths'}")
+                path.write_text(text, encoding="utf-8")
+                print(f"{path.name:32} {count:8,} bytes", flush=True)
+
+
+if __name__ == "__main__":
+    main()
