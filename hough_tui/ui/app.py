@@ -247,16 +247,19 @@ class HoughApp(App[None]):
 
     def action_save_as(self) -> None:
         """Save the set to another file, which becomes its own."""
+        self._save_as(lambda: None)
+
+    def _save_as(self, go_on: Callable[[], None]) -> None:
+        """Ask for a file, save the set to it, and go on."""
         from hough_tui.ui.screens.path_prompt import PathPrompt
 
-        if self.workspace is None:
-            return
-        given = str(self.workspace.path or f"{self.workspace.given.name}.yaml")
-        self.push_screen(PathPrompt("Save the set as", given, is_new=True), self._save_chosen)
+        def chosen(path: Path | None) -> None:
+            if path is not None and self._save(path):
+                go_on()
 
-    def _save_chosen(self, path: Path | None) -> None:
-        if path is not None:
-            self._save(path)
+        if self.workspace is not None:
+            given = str(self.workspace.path or f"{self.workspace.given.name}.yaml")
+            self.push_screen(PathPrompt("Save the set as", given, is_new=True), chosen)
 
     def _save(self, path: Path | None) -> bool:
         from algorithms.errors import RequestError
@@ -329,7 +332,7 @@ class HoughApp(App[None]):
         self._main.stop_work()
         self.exit()
 
-    def _when_saved(self, go_on: Any) -> None:
+    def _when_saved(self, go_on: Callable[[], None]) -> None:
         """Go on at once, or when the user has decided about unsaved changes."""
         workspace = self.workspace
         if workspace is None or not workspace.is_changed:
@@ -344,7 +347,7 @@ class HoughApp(App[None]):
                 go_on()
             elif key == "save":
                 if workspace.path is None:
-                    self.action_save_as()
+                    self._save_as(go_on)
                 elif self._save(None):
                     go_on()
 

@@ -260,9 +260,16 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
         fields = self._described()
         self._shape = _shape(fields)
         self._fields, self._tables = {}, {}
+        old = [child for child in self.children if child is not self._top]
         with self.app.batch_update():
-            self.query_children("*").exclude(".form--problem").remove()
+            for child in old:
+                child.display = False
             self.mount_all(self._built(fields))
+        # A Select that is taken away before it was mounted fails, so what was built goes a moment later.
+        self.call_after_refresh(self._take_away, old)
+
+    async def _take_away(self, old: Sequence[Widget]) -> None:
+        await self.remove_children([child for child in old if child.parent is self])
 
     def _built(self, fields: Sequence[FieldDescription]) -> Iterator[Widget]:
         singles = [field for field in fields if field.kind not in (Kind.GROUP, Kind.LIST)]

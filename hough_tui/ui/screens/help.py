@@ -30,7 +30,7 @@ class HelpScreen(ModalScreen[None]):
 
     def __init__(self, text: str, bindings: list[ActiveBinding]) -> None:
         super().__init__()
-        self._text, self._bindings = text, bindings
+        self._text, self._listed = text, bindings
 
     def compose(self) -> ComposeResult:
         """Lay out the text above the keys."""
@@ -53,7 +53,7 @@ class HelpScreen(ModalScreen[None]):
         table.add_column(style="dim", no_wrap=True)
         keys: dict[str, list[str]] = {}
         shown: dict[str, Binding] = {}
-        for active in self._bindings:
+        for active in self._listed:
             binding = active.binding
             name = binding.id or binding.action
             if binding.description and not binding.system:

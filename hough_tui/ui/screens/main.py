@@ -152,7 +152,8 @@ class MainScreen(Screen[None]):
         if event.pane.id in TABS:
             await self._show_tab(event.pane.id or "")
 
-    async def _show_tab(self, name: str) -> None:
+    async def _show_tab(self, name: str, index: int | None = None) -> None:
+        """Show a view, mounted now if this is the first time, and the part of the set that it is to show."""
         if self._workspace is None or not name:
             return
         if name not in self._views:
@@ -164,6 +165,8 @@ class MainScreen(Screen[None]):
         elif name in self._stale:
             self._stale.discard(name)
             self._views[name].show_set(self._workspace.given)
+        if index is not None and hasattr(self._views[name], "choose"):
+            self._views[name].choose(index)
 
     async def action_tab(self, name: str) -> None:
         """Show a view."""
@@ -198,9 +201,8 @@ class MainScreen(Screen[None]):
     async def choose(self, part: str, index: int) -> None:
         """Show a scenario, an initiator or an experiment of the set."""
         name = {"scenarios": "scenario", "initiators": "initiator", "experiments": "monte-carlo"}[part]
+        await self._show_tab(name, index)
         await self.action_tab(name)
-        if name in self._views and hasattr(self._views[name], "choose"):
-            self._views[name].choose(index)
 
     async def on_set_tree_chosen(self, event: Any) -> None:
         """Show what was chosen in the tree."""

@@ -26,6 +26,7 @@ class ChartPane(Vertical):
     """A metric against the swept field, or the ratio of false tracks by trial, around one row."""
 
     DEFAULT_CSS = """
+    ChartPane { padding: 0 1; }
     ChartPane #metric { width: 44; max-width: 100%; }
     ChartPane RatePlot { height: 1fr; }
     """

@@ -19,7 +19,7 @@ class RatePlot(PlotextPlot, can_focus=True):
     """A chart of plotext; each drawing has a figure of its own."""
 
     DEFAULT_CSS = """
-    RatePlot { background: $surface; padding: 0 1; }
+    RatePlot { background: $surface; }
     RatePlot:focus { background: $surface-lighten-1 50%; }
     """
 

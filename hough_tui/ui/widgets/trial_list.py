@@ -33,7 +33,7 @@ class TrialList(ScrollView, can_focus=True):
     TrialList > .trial-list--cursor { background: $primary 30%; }
     TrialList:focus > .trial-list--cursor { background: $primary; color: $text; }
     TrialList > .trial-list--wrong { color: $text-error; text-style: bold; }
-    TrialList > .trial-list--quiet { color: $text-muted; }
+    TrialList > .trial-list--quiet { text-style: dim; }
     """
     COMPONENT_CLASSES: ClassVar[set[str]] = {
         "trial-list--header",

@@ -95,11 +95,11 @@ def test_numbers_mean_what_people_type_and_the_text_stays(drive):
 
 
 def test_what_may_mean_two_things_is_asked_back(drive):
-    # What stands in the set is its beginning, which was a number: never 15, never 1500.
+    # What stands in the set is what was there, or the beginning, which is a number: never 15, never 1500.
     cases = [
-        (STEP, "1,500", 1.5, "'1,500' may mean 1.500 or 1500; write one of them"),
-        (STEP, "0.5 km", 0.5, "'0.5 km' is given; write the number alone, without 'km'"),
-        (BINS, "1,5", 1, "'1,5' is given; it must be a whole number"),
+        (STEP, "1,500", (0.6, 1, 1.5), "'1,500' may mean 1.500 or 1500; write one of them"),
+        (STEP, "0.5 km", (2, 0.5), "'0.5 km' is given; write the number alone, without 'km'"),
+        (BINS, "1,5", (90, 1), "'1,5' is given; it must be a whole number"),
     ]
 
     async def journey(user):
@@ -109,8 +109,9 @@ def test_what_may_mean_two_things_is_asked_back(drive):
             await user.sees("✗ a field is wrong", words)
             assert field.problem.startswith(words)
             assert field.text == typed
-            assert user.value(*path) == kept
+            assert user.value(*path) in kept
             await user.fill(path, "2")
+            await user.until(lambda path=path: user.value(*path) == 2)
             await user.until(lambda: "✗" not in user.text)
             assert words not in user.text
 
