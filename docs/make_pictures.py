@@ -1,7 +1,8 @@
-"""Make the pictures of the application, as SVG, from the application itself.
+"""Make the pictures of the application, as SVG, and the tables of its keys, from the application itself.
 
 Run it with `python docs/make_pictures.py`; the pictures come into `docs/pictures/`, or into the folder
 that is given. Each view is taken on a wide terminal (120 × 36) and on a narrow one (80 × 24).
+`python docs/make_pictures.py keys` writes the tables of `docs/keys.md` anew.
 
 The same sources give the same pictures: draws come from seeds, and what tells of this machine or of
 this day (speeds, times, names of runs) is taken out. Settings, unsaved work and runs of the user are
@@ -122,10 +123,9 @@ def tidied(picture: str) -> str:
             # An escaped character counts as one.
             before = len(re.sub("&[^;]+;", "x", text[: word.start()]))
             count = len(re.sub("&[^;]+;", "x", word[0]))
-            made.append(
-                f'<text class="{style}" x="{float(x) + WIDTH * before:.5g}" y="{y}" '
-                f'textLength="{WIDTH * count:.5g}" clip-path="{clip}">{word[0].replace(chr(160), SPACE)}</text>'
-            )
+            place = f'x="{float(x) + WIDTH * before:.5g}" y="{y}" textLength="{WIDTH * count:.5g}"'
+            shown = word[0].replace("\xa0", SPACE)
+            made.append(f'<text class="{style}" {place} clip-path="{clip}">{shown}</text>')
         return "".join(made)
 
     return RUN.sub(parts, picture)
@@ -171,8 +171,84 @@ async def taken(name: str, size: tuple[int, int]) -> str:
     return found
 
 
+PLACES = {
+    "Everywhere": ("HoughApp", "MainScreen"),
+    "The tree of the set": ("SetTree",),
+    "Forms": ("ModelForm", "ValueField", "NumberInput", "TextInput", "Flag"),
+    "Tables in forms (targets, clutter)": ("ListTable", "CellTable"),
+    "Scenario": ("ScenarioView",),
+    "Initiator": ("InitiatorView",),
+    "Look": ("LookView", "LookPanel"),
+    "Look: the plane (and the picture of Scenario)": ("Plane",),
+    "Look: the accumulator": ("Heatmap",),
+    "Look: the table of tracks": ("TrackGrid",),
+    "Look: why this peak": ("WhyPeak",),
+    "Monte Carlo": ("MonteCarloView", "RunField"),
+    "Monte Carlo and Results: rates as table and chart": ("RatePanel", "RateGrid"),
+    "The trials behind a row": ("TrialsScreen", "TrialList"),
+    "Results": ("ResultsView", "RunList"),
+    "Results: runs compared": ("ComparisonScreen",),
+    "Tables of rates, of runs": ("VimTable",),
+}
+"""The classes whose keys stand under each heading; those of all others stand under `OTHERS`."""
+
+OTHERS = "Dialogues"
+BEGIN, END = "<!-- keys: begin -->", "<!-- keys: end -->"
+
+
+def bindings() -> dict[str, list[Any]]:
+    """Return the bindings that each class of the application declares itself, by its name."""
+    import importlib
+    import inspect
+    import pkgutil
+
+    from textual.dom import DOMNode
+
+    import hough_tui.ui
+
+    found = {}
+    for module in pkgutil.walk_packages(hough_tui.ui.__path__, "hough_tui.ui."):
+        for name, kind in vars(importlib.import_module(module.name)).items():
+            own = inspect.isclass(kind) and issubclass(kind, DOMNode) and kind.__module__ == module.name
+            if own and kind.__dict__.get("BINDINGS"):
+                found[name] = list(kind.__dict__["BINDINGS"])
+    return found
+
+
+def key_tables() -> str:
+    """Return the tables of all keys, as Markdown."""
+    known = bindings()
+    placed = {name for names in PLACES.values() for name in names}
+    lines = []
+    for title, names in (PLACES | {OTHERS: tuple(name for name in known if name not in placed)}).items():
+        rows = dict.fromkeys(
+            (binding.id or "", binding.key, binding.description)
+            for name in names
+            for binding in known.get(name, ())
+        )
+        if rows:
+            lines += [f"### {title}", "", "| id | keys | what it does |", "|---|---|---|"]
+            lines += [
+                f"| `{name}` | {', '.join(f'`{key}`' for key in keys.split(','))} | {what} |"
+                for name, keys, what in rows
+            ]
+            lines.append("")
+    return "\n".join(lines)
+
+
+def write_keys() -> None:
+    """Put the tables into the page of keys."""
+    path = Path(__file__).with_name("keys.md")
+    before, _, rest = path.read_text(encoding="utf-8").partition(BEGIN)
+    after = rest.partition(END)[2]
+    path.write_text(f"{before}{BEGIN}\n\n{key_tables()}\n{END}{after}", encoding="utf-8")
+
+
 def main() -> None:
-    """Make all pictures."""
+    """Make all pictures, or the tables of keys."""
+    if sys.argv[1:] == ["keys"]:
+        write_keys()
+        return
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).with_name("pictures")
     folder = folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)

@@ -115,10 +115,12 @@ class Job:
         for cell, columns, finished, seconds in zip(
             self.plan.cells, self.columns, self._finished, self._seconds, strict=True
         ):
-            if finished.all():
+            # The workers go on meanwhile: the mask must be the same for every column.
+            done = finished.copy()
+            if done.all():
                 yield cell, columns, float(seconds)
-            elif finished.any():
-                yield cell, columns.part(finished), float(seconds)
+            elif done.any():
+                yield cell, columns.part(done), float(seconds)
 
     def rows(self) -> list[Row]:
         """Return the rows of the cells that have finished trials, over these trials."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable
+from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -384,6 +386,10 @@ def run(set_name: str | None) -> int:
     """
     from hough_tui.ui.config import read_config
 
+    # Threads that compute must hand the interpreter over quickly for the screen to answer; and a pool of
+    # processes cannot be begun once the screen is up, unless what looks after it runs already.
+    sys.setswitchinterval(0.001)
+    resource_tracker.ensure_running()
     app = HoughApp(set_name, read_config())
     app.run()
     return app.return_code or 0

@@ -268,8 +268,8 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
         # A Select that is taken away before it was mounted fails, so what was built goes a moment later.
         self.call_after_refresh(self._take_away, old)
 
-    async def _take_away(self, old: Sequence[Widget]) -> None:
-        await self.remove_children([child for child in old if child.parent is self])
+    def _take_away(self, old: Sequence[Widget]) -> None:
+        self.remove_children([child for child in old if child.parent is self])
 
     def _built(self, fields: Sequence[FieldDescription]) -> Iterator[Widget]:
         singles = [field for field in fields if field.kind not in (Kind.GROUP, Kind.LIST)]

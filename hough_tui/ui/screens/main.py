@@ -201,12 +201,17 @@ class MainScreen(Screen[None]):
     async def choose(self, part: str, index: int) -> None:
         """Show a scenario, an initiator or an experiment of the set."""
         name = {"scenarios": "scenario", "initiators": "initiator", "experiments": "monte-carlo"}[part]
-        await self._show_tab(name, index)
         await self.action_tab(name)
+        await self._show_tab(name, index)
 
-    async def on_set_tree_chosen(self, event: Any) -> None:
+    def on_monte_carlo_view_progress(self, event: Any) -> None:
+        """Say on the status line how far the run is."""
+        self.query_one(StatusLine).job = event.text or ""
+
+    def on_set_tree_chosen(self, event: Any) -> None:
         """Show what was chosen in the tree."""
-        await self.choose(event.part, event.index)
+        # Not awaited here: mounting waits for messages that this handler would hold up.
+        self.run_worker(self.choose(event.part, event.index), exclusive=True, group="choose")
 
     def help_text(self) -> str:
         """Return what the view that is seen is for."""

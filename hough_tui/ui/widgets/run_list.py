@@ -73,6 +73,11 @@ class RunList(VimTable):
         elif found:
             self.move_cursor(row=min(place, len(found) - 1))
 
+    @property
+    def _marked_names(self) -> list[str]:
+        # The list has the newest run first.
+        return [name for name in reversed(self.known) if name in self.marked]
+
     def action_mark(self) -> None:
         """Mark the run under the cursor, or take its mark away, and go on to the next one."""
         name = self.chosen
@@ -86,7 +91,7 @@ class RunList(VimTable):
 
     def action_compare(self) -> None:
         """Compare the marked runs."""
-        self.post_message(self.Comparing(sorted(self.marked)))
+        self.post_message(self.Comparing(self._marked_names))
 
     def action_export(self) -> None:
         """Export the run under the cursor."""
@@ -95,6 +100,6 @@ class RunList(VimTable):
 
     def action_delete(self) -> None:
         """Delete the marked runs, or the one under the cursor where none is marked."""
-        names = sorted(self.marked) or ([self.chosen] if self.chosen is not None else [])
+        names = self._marked_names or ([self.chosen] if self.chosen is not None else [])
         if names:
             self.post_message(self.Deleting(names))
