@@ -1,7 +1,7 @@
 """The frame: sizes, keys, palette, help, and sets that cannot be opened."""
 
 from textual.command import CommandPalette
-from textual.widgets import OptionList, Select
+from textual.widgets import OptionList
 
 from hough_tui.ui.config import read_config
 from hough_tui.ui.widgets.heatmap import Heatmap
@@ -246,25 +246,6 @@ def test_a_file_is_opened_by_its_path(drive, home):
         assert not user.view.is_at_work
 
     drive(journey)
-
-
-def test_the_tree_leads_to_what_the_set_holds(drive):
-    async def journey(user):
-        tree = user.main.query_one("SetTree")
-        tree.focus()
-        # Down to the second scenario, to the third initiator, to the last experiment.
-        for steps, tab, words in (
-            (3, "scenario", "three-scans, trial 0 of seed"),
-            (4, "initiator", "modified"),
-            (4, "monte-carlo", "modified"),
-        ):
-            tree.focus()
-            await user.press(*["j"] * steps, "enter")
-            await user.until(lambda tab=tab: user.tab == tab)
-            await user.sees(words)
-        assert user.view.query_one("RunForm").query_one(Select).value == "modified"
-
-    drive(journey, "course-report")
 
 
 SMALL = """\
