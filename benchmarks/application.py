@@ -195,11 +195,13 @@ class Inside(Terminal):
 
 async def inside(name: str, descriptor: int) -> None:
     """Run the application, and answer what is asked over a socket."""
+    from hough_tui.ui import interpreter
     from hough_tui.ui.app import HoughApp
     from hough_tui.ui.config import Config
     from hough_tui.ui.forms.model_form import ModelForm
     from hough_tui.ui.messages import FieldEdited
 
+    interpreter.prepare()
     app = HoughApp(name, Config())
     gaps: list[float] = []
 
@@ -409,7 +411,7 @@ def written_bytes() -> None:
         terminal.settle(1.2, 3.0)
         terminal.ask(do="focus", path=["scenarios", 0, "scans"])
         terminal.drain(1.5)
-        counted("idle for 2 s in a field of Scenario: its cursor blinks", terminal.drain(2.0), 0)
+        counted("idle for 2 s in a field of Scenario", terminal.drain(2.0), 0)
 
 
 def ending() -> None:
@@ -451,8 +453,10 @@ PARTS = {
 
 def main() -> None:
     if sys.argv[1:2] == ["--inside"]:
+        from hough_tui.ui.interpreter import leave
+
         asyncio.run(inside(sys.argv[3], int(sys.argv[2])))
-        return
+        leave(0)
     for name in sys.argv[1:] or PARTS:
         print(f"{name}: {PARTS[name].__doc__}")
         PARTS[name]()

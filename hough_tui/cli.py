@@ -604,8 +604,9 @@ def open_application(
         refuse(True, unknown(name, known, "file, bundled set or command"))
     require_terminal()
     from hough_tui.ui.app import run
+    from hough_tui.ui.interpreter import leave
 
-    raise typer.Exit(run(name))
+    leave(run(name))
 
 
 def commands() -> list[str]:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import sys
+import threading
 from collections.abc import Callable, Iterable
-from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -14,8 +13,18 @@ from textual.binding import Binding, BindingType
 from textual.screen import Screen
 from textual.worker import Worker, WorkerState
 
+from hough_tui.ui import interpreter
 from hough_tui.ui.config import Config
-from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited, FieldUnreadable, TrialOpened
+from hough_tui.ui.messages import (
+    ElementAdded,
+    ElementRemoved,
+    FieldEdited,
+    FieldUnreadable,
+    Prepared,
+    Preparing,
+    SetShown,
+    TrialOpened,
+)
 from hough_tui.ui.screens.main import MainScreen
 from hough_tui.ui.screens.question import Question, telling
 
@@ -50,6 +59,7 @@ class HoughApp(App[None]):
         self._set_name, self._config = set_name, config
         self.workspace: Workspace | None = None
         self._unanswered: Unsaved | None = None
+        self._is_warming = False
         self._main = MainScreen()
 
     def get_default_screen(self) -> Screen[Any]:
@@ -127,7 +137,6 @@ class HoughApp(App[None]):
             self.workspace.forget_saved()
         self._main.tell_state(None)
         self._main.show_workspace(self.workspace)
-        self._warm()
         self._unanswered = kept
         if kept is not None:
 
@@ -148,16 +157,38 @@ class HoughApp(App[None]):
                 answer,
             )
 
-    @work(thread=True, exit_on_error=False, group="warm", name="warm")
+    @on(SetShown)
+    def _warm_once(self) -> None:
+        # Not sooner: what loads in the background would take its time from the first form.
+        if not self._is_warming:
+            self._is_warming = True
+            # No worker of Textual's: the application would wait for its end, and a compilation takes long.
+            threading.Thread(target=self._warm, name="warm", daemon=True).start()
+
     def _warm(self) -> None:
         """Load the kernels, or compile them, before they are first wanted."""
         from algorithms.compiled import is_cold
         from hough_tui.ui.warming import warm
 
         if is_cold():
-            self.call_from_thread(self._main.tell_state, "compiling kernels, once, up to 20 s")
-        warm()
-        self.call_from_thread(self._main.tell_state, None)
+            self.post_message(Preparing("compiling kernels, once, up to 20 s"))
+        try:
+            warm()
+        except Exception as error:
+            self.post_message(Prepared(error))
+        else:
+            self.post_message(Prepared())
+
+    @on(Preparing)
+    def _tell_preparing(self, event: Preparing) -> None:
+        self._main.tell_state(event.text)
+
+    @on(Prepared)
+    def _end_preparing(self, event: Prepared) -> None:
+        interpreter.settle()
+        self._main.tell_state(None)
+        if event.error is not None:
+            self._tell_error(event.error)
 
     # Editing
 
@@ -371,9 +402,11 @@ class HoughApp(App[None]):
     @on(Worker.StateChanged)
     def _tell_failure(self, event: Worker.StateChanged) -> None:
         if event.state is WorkerState.ERROR and event.worker.error is not None:
-            error = event.worker.error
             self._main.tell_state(None)
-            self.push_screen(telling("That did not work", f"{error}" or type(error).__name__))
+            self._tell_error(event.worker.error)
+
+    def _tell_error(self, error: BaseException) -> None:
+        self.push_screen(telling("That did not work", f"{error}" or type(error).__name__))
 
 
 def run(set_name: str | None) -> int:
@@ -386,10 +419,7 @@ def run(set_name: str | None) -> int:
     """
     from hough_tui.ui.config import read_config
 
-    # Threads that compute must hand the interpreter over quickly for the screen to answer; and a pool of
-    # processes cannot be begun once the screen is up, unless what looks after it runs already.
-    sys.setswitchinterval(0.001)
-    resource_tracker.ensure_running()
+    interpreter.prepare()
     app = HoughApp(set_name, read_config())
     app.run()
     return app.return_code or 0

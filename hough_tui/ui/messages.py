@@ -10,6 +10,26 @@ if TYPE_CHECKING:
     from algorithms.parameters import Path
 
 
+class SetShown(Message):
+    """The set that was opened is on the screen."""
+
+
+class Preparing(Message):
+    """Something is prepared in the background, which takes a while."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.text = text
+
+
+class Prepared(Message):
+    """All that is prepared in the background is there, or it has failed."""
+
+    def __init__(self, error: Exception | None = None) -> None:
+        super().__init__()
+        self.error = error
+
+
 class FieldEdited(Message):
     """A field of the set was given a value that reads as one; the application validates and keeps it."""
 

@@ -59,7 +59,10 @@ class TextInput(Input):
 def input_for(field: FieldDescription, text: str, placeholder: str, classes: str) -> Input:
     """Return the input in which a field is typed."""
     kind = NumberInput if field.is_numeric else TextInput
-    return kind(text, placeholder, compact=True, select_on_focus=field.is_numeric, classes=classes)
+    made = kind(text, placeholder, compact=True, select_on_focus=field.is_numeric, classes=classes)
+    # A cursor that blinks would write to the terminal for ever, also where that is far away.
+    made.cursor_blink = False
+    return made
 
 
 class Flag(Widget, can_focus=True):

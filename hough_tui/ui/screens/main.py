@@ -11,6 +11,7 @@ from textual.containers import Container, Horizontal
 from textual.screen import Screen
 from textual.widgets import TabbedContent, TabPane
 
+from hough_tui.ui.messages import SetShown
 from hough_tui.ui.widgets.key_line import KeyLine
 from hough_tui.ui.widgets.status_line import StatusLine
 
@@ -95,6 +96,7 @@ class MainScreen(Screen[None]):
         await place.mount(SetTree())
         self.show_set(self._workspace)
         await self._show_tab(self.query_one(TabbedContent).active)
+        self.call_after_refresh(self.post_message, SetShown())
 
     def show_set(self, workspace: Workspace) -> None:
         """Show the set as it is now: at once in the view that is seen, in the others when they are."""

@@ -21,7 +21,7 @@ from scenarios.model import InitiatorEntry, MatchCriterion, Scenario, ScenarioSe
 if TYPE_CHECKING:
     from hough_tui.ui.messages import TrialOpened
 
-DEBOUNCE = 0.06
+DEBOUNCE = 0.03
 """Seconds without a further change before a trial is worked out anew."""
 
 WIDE, VERY_WIDE = 88, 150

@@ -22,7 +22,7 @@ from hough_tui.ui.widgets.plane import Plane
 from hough_tui.ui.widgets.plane_scene import PlaneScene
 from scenarios.model import Scenario, ScenarioSet
 
-DEBOUNCE = 0.06
+DEBOUNCE = 0.03
 """Seconds without a further change before the picture is drawn anew."""
 
 WIDE = 88

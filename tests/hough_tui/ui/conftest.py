@@ -1,6 +1,7 @@
 """The application without a terminal, and a user who drives it as people do."""
 
 import asyncio
+import threading
 import time
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -111,8 +112,9 @@ class User:
     async def warm(self) -> None:
         """Wait until a set is open and what the application prepares behind it is done."""
         await self.until(lambda: self.app.workspace)
+        await self.until(lambda: self.app._is_warming)
+        await self.until(lambda: "warm" not in (thread.name for thread in threading.enumerate()))
         await self.until(lambda: not [worker for worker in self.app.workers if worker.is_running])
-        await self.until(lambda: self.app.screen_stack[0].query("SetTree"))
         await self.settle()
 
     @property
