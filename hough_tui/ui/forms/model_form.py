@@ -13,7 +13,7 @@ from textual.binding import Binding
 from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.events import Resize
-from textual.widget import Widget
+from textual.widget import AwaitMount, Widget
 from textual.widgets import Input, Static
 
 from algorithms.context import Unit
@@ -77,6 +77,7 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
         self._fields: dict[Path, ValueField] = {}
         self._tables: dict[Path, ListTable] = {}
         self._negotiation = Negotiation()
+        self._mounting: AwaitMount | None = None
         self._top = Static("", classes="form--problem", markup=False)
 
     @property
@@ -157,7 +158,7 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
 
     def revert(self) -> None:
         """Show what is in effect in place of what is typed and is not."""
-        self._asked = Negotiation()
+        self._negotiation = Negotiation()
         for field in self._fields.values():
             if field.check_action("revert", ()):
                 field.action_revert()
@@ -173,6 +174,12 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
                 if inner.can_focus:
                     inner.focus()
                     return
+
+    def focus_first(self) -> None:
+        """Put the cursor into the first field."""
+        first = next((child for child in self.walk_children(Widget) if child.focusable), None)
+        if first is not None:
+            first.focus()
 
     @on(Input.Submitted)
     def _submitted(self, event: Input.Submitted) -> None:
@@ -264,12 +271,14 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
         with self.app.batch_update():
             for child in old:
                 child.display = False
-            self.mount_all(self._built(fields))
-        # A Select that is taken away before it was mounted fails, so what was built goes a moment later.
-        self.call_after_refresh(self._take_away, old)
+            before, self._mounting = self._mounting, self.mount_all(self._built(fields))
+        if before is not None:
+            self.run_worker(self._take_away(old, before))
 
-    def _take_away(self, old: Sequence[Widget]) -> None:
-        self.remove_children([child for child in old if child.parent is self])
+    async def _take_away(self, old: Sequence[Widget], mounting: AwaitMount) -> None:
+        # A widget that is taken away before it was mounted never finishes either.
+        await mounting
+        await self.remove_children([child for child in old if child.parent is self])
 
     def _built(self, fields: Sequence[FieldDescription]) -> Iterator[Widget]:
         singles = [field for field in fields if field.kind not in (Kind.GROUP, Kind.LIST)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import on
@@ -57,6 +58,7 @@ class MainScreen(Screen[None]):
         self._workspace: Workspace | None = None
         self._views: dict[str, Any] = {}
         self._stale: set[str] = set()
+        self._showing = asyncio.Lock()
 
     def compose(self) -> ComposeResult:
         """Lay out the frame."""
@@ -81,20 +83,21 @@ class MainScreen(Screen[None]):
     def show_workspace(self, workspace: Workspace) -> None:
         """Show another set; views of the one before are built anew."""
         self._workspace = workspace
-        self.run_worker(self._rebuild(), exclusive=True, group="rebuild")
+        self.run_worker(self._rebuild())
 
     async def _rebuild(self) -> None:
         from hough_tui.ui.widgets.set_tree import SetTree
 
         assert self._workspace is not None
-        for view in self._views.values():
-            await view.remove()
-        self._views.clear()
-        self._stale.clear()
-        place = self.query_one("#tree-place")
-        await place.remove_children()
-        await place.mount(SetTree())
-        self.show_set(self._workspace)
+        async with self._showing:
+            for view in self._views.values():
+                await view.remove()
+            self._views.clear()
+            self._stale.clear()
+            place = self.query_one("#tree-place")
+            await place.remove_children()
+            await place.mount(SetTree())
+            self.show_set(self._workspace)
         await self._show_tab(self.query_one(TabbedContent).active)
         self.call_after_refresh(self.post_message, SetShown())
 
@@ -149,13 +152,20 @@ class MainScreen(Screen[None]):
 
     # Views
 
+    # None of these waits inside a handler of a message: mounting waits for messages that it would hold up.
+
     @on(TabbedContent.TabActivated)
-    async def _activate(self, event: TabbedContent.TabActivated) -> None:
+    def _activate(self, event: TabbedContent.TabActivated) -> None:
         if event.pane.id in TABS:
-            await self._show_tab(event.pane.id or "")
+            self.run_worker(self._show_tab(event.pane.id or ""))
 
     async def _show_tab(self, name: str, index: int | None = None) -> None:
         """Show a view, mounted now if this is the first time, and the part of the set that it is to show."""
+        # One after the other, and each to its end: a view that is half mounted would stay blank.
+        async with self._showing:
+            await self._show(name, index)
+
+    async def _show(self, name: str, index: int | None) -> None:
         if self._workspace is None or not name:
             return
         if name not in self._views:
@@ -170,8 +180,11 @@ class MainScreen(Screen[None]):
         if index is not None and hasattr(self._views[name], "choose"):
             self._views[name].choose(index)
 
-    async def action_tab(self, name: str) -> None:
+    def action_tab(self, name: str) -> None:
         """Show a view."""
+        self.run_worker(self._go(name))
+
+    async def _go(self, name: str) -> None:
         self.query_one(TabbedContent).active = name
         await self._show_tab(name)
         if name in self._views:
@@ -183,27 +196,27 @@ class MainScreen(Screen[None]):
 
     def run_experiment(self) -> None:
         """Run the experiment of the Monte Carlo view."""
-        self.run_worker(self._run_experiment(), exclusive=True, group="run")
+        self.run_worker(self._run_experiment())
 
     async def _run_experiment(self) -> None:
-        await self.action_tab("monte-carlo")
+        await self._go("monte-carlo")
         if "monte-carlo" in self._views:
             self.show_soundness()
             self._views["monte-carlo"].action_run()
 
     def open_trial(self, opened: TrialOpened) -> None:
         """Look at a trial."""
-        self.run_worker(self._open_trial(opened), exclusive=True, group="open-trial")
+        self.run_worker(self._open_trial(opened))
 
     async def _open_trial(self, opened: TrialOpened) -> None:
-        await self.action_tab("look")
+        await self._go("look")
         if "look" in self._views:
             self._views["look"].open_trial(opened)
 
-    async def choose(self, part: str, index: int) -> None:
+    async def _choose(self, part: str, index: int) -> None:
         """Show a scenario, an initiator or an experiment of the set."""
         name = {"scenarios": "scenario", "initiators": "initiator", "experiments": "monte-carlo"}[part]
-        await self.action_tab(name)
+        await self._go(name)
         await self._show_tab(name, index)
 
     def on_monte_carlo_view_progress(self, event: Any) -> None:
@@ -212,8 +225,7 @@ class MainScreen(Screen[None]):
 
     def on_set_tree_chosen(self, event: Any) -> None:
         """Show what was chosen in the tree."""
-        # Not awaited here: mounting waits for messages that this handler would hold up.
-        self.run_worker(self.choose(event.part, event.index), exclusive=True, group="choose")
+        self.run_worker(self._choose(event.part, event.index))
 
     def help_text(self) -> str:
         """Return what the view that is seen is for."""

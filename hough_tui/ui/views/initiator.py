@@ -120,15 +120,16 @@ class InitiatorView(Widget):
     @on(OptionList.OptionHighlighted)
     def _highlighted(self, event: OptionList.OptionHighlighted) -> None:
         event.stop()
-        if self._given is not None and event.option_index != self._index:
+        # What was told before the list moved on is stale: two such would chase each other for ever.
+        is_stale = event.option_index != event.option_list.highlighted
+        if self._given is not None and event.option_index != self._index and not is_stale:
             self.choose(event.option_index)
 
     @on(OptionList.OptionSelected)
     def _selected(self, event: OptionList.OptionSelected) -> None:
         event.stop()
         if self._given is not None and self._given.initiators:
-            first = next(iter(type(self._given.initiators[self._index]).model_fields))
-            self.query_one(ModelForm).focus_field(("initiators", self._index, first))
+            self.query_one(ModelForm).focus_first()
 
     def action_move(self, step: int) -> None:
         """Move the choice in the list."""

@@ -6,6 +6,7 @@ from textual.widgets import OptionList
 from hough_tui.ui.config import read_config
 from hough_tui.ui.widgets.heatmap import Heatmap
 from hough_tui.ui.widgets.plane import Plane
+from hough_tui.ui.widgets.set_tree import SetTree
 
 KEYS = {"scenario": "f2", "initiator": "f3", "look": "f4", "monte-carlo": "f6", "results": "f7"}
 
@@ -260,3 +261,34 @@ scenarios:
     sensor: {kind: cartesian, sigma: 0.1}
     targets: [{position: [1, 1], velocity: [0.1, 0.1]}]
 """
+
+
+def test_the_tree_leads_to_what_the_set_holds(drive):
+    async def journey(user):
+        tree = user.main.query_one("SetTree")
+        # To the second scenario, the third initiator, the last experiment.
+        for steps, tab, words in (
+            (3, "scenario", "three-scans, trial 0 of seed"),
+            (4, "initiator", "modified"),
+            (4, "monte-carlo", "modified"),
+        ):
+            tree.focus()
+            await user.press(*["j"] * steps, "enter")
+            await user.until(lambda tab=tab: user.tab == tab)
+            await user.sees(words)
+        await user.until(lambda: user.view.query_one("RunForm Select").value == "modified")
+        # To and fro, faster than the forms are built.
+        initiator = user.main._views["initiator"]
+        for _ in range(3):
+            for index in (0, 2, 1):
+                user.main.query_one("SetTree").post_message(SetTree.Chosen("initiators", index))
+        await user.until(lambda: user.tab == "initiator" and initiator.query_one("ModelForm").model)
+        await user.still()
+        assert initiator.query_one("ModelForm").model.name == "sequential"
+        assert initiator.query_one("OptionList").highlighted == 1
+        # Into the form from the list.
+        initiator.query_one("OptionList").focus()
+        await user.press("enter")
+        assert initiator.query_one("ModelForm") in user.app.focused.ancestors
+
+    drive(journey, "course-report")
