@@ -327,13 +327,22 @@ class HoughApp(App[None]):
     # Help
 
     def action_explain(self) -> None:
-        """Help for the focused view."""
+        """Explain the focused field; without one, or once more, tell what the focused view is for."""
+        from hough_tui.ui.forms.value_field import ValueField
+        from hough_tui.ui.screens.explanation import ExplanationScreen
         from hough_tui.ui.screens.help import HelpScreen
 
         if isinstance(self.screen, HelpScreen):
             self.screen.dismiss(None)
             return
-        self.push_screen(HelpScreen(self._main.help_text(), list(self.screen.active_bindings.values())))
+        if isinstance(self.screen, ExplanationScreen):
+            self.screen.dismiss(None)
+        elif self.focused is not None:
+            for node in self.focused.ancestors_with_self:
+                if isinstance(node, ValueField):
+                    node.action_explain()
+                    return
+        self.push_screen(HelpScreen(self._main.help_text(), list(self._main.active_bindings.values())))
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """Yield every action of the application and of the focused view for the command palette."""

@@ -7,7 +7,7 @@ from textual.binding import Binding
 from textual.message import Message
 from textual.reactive import reactive
 from textual.widget import Widget
-from textual.widgets import Input
+from textual.widgets import Input, Select
 
 from hough_tui.ui.forms.fields import FieldDescription
 from hough_tui.ui.forms.texts import NO, YES
@@ -47,13 +47,17 @@ class NumberInput(Input):
 class TextInput(Input):
     """A line of text, in which a question mark is text too."""
 
-    BINDINGS = [
-        Binding("f1,ctrl+question_mark", "explain", "Explain", key_display="F1", id="field.explain_text")
-    ]
+    BINDINGS = [Binding("ctrl+question_mark", "explain", "Explain", show=False, id="field.explain-text")]
 
     def action_explain(self) -> None:
         """Ask what the field is."""
         self.post_message(ExplanationWanted())
+
+
+class Menu(Select[str], inherit_bindings=False):
+    """A choice, whose menu is opened on purpose only: up and down go to the fields around it."""
+
+    BINDINGS = [Binding("enter,space", "show_overlay", "Open the menu", show=False, id="menu.open")]
 
 
 def input_for(field: FieldDescription, text: str, placeholder: str, classes: str) -> Input:

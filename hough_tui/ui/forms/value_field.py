@@ -13,7 +13,7 @@ from textual.widget import Widget
 from textual.widgets import Input, Select, Static
 
 from algorithms.parameters import Path
-from hough_tui.ui.forms.controls import EXPLAIN, ExplanationWanted, Flag, input_for
+from hough_tui.ui.forms.controls import EXPLAIN, ExplanationWanted, Flag, Menu, input_for
 from hough_tui.ui.forms.fields import FieldDescription, Kind
 from hough_tui.ui.forms.numbers import Unreadable
 from hough_tui.ui.forms.texts import shown, text_of, value_of
@@ -236,7 +236,7 @@ class ValueField(Widget):
             case Kind.CHOICE if self.field.is_constant:
                 return Static(text, classes=f"field--constant {CONTROL}", markup=False)
             case Kind.CHOICE:
-                return Select(
+                return Menu(
                     [(Content(choice), choice) for choice in self.field.choices],
                     value=text if text else Select.NULL,
                     allow_blank=self.field.optional,

@@ -80,9 +80,7 @@ class ExplanationScreen(ModalScreen[None]):
     """
 
     BINDINGS = [
-        Binding(
-            "escape,enter,question_mark,q,f1", "close", "Close", key_display="Esc", id="explanation.close"
-        ),
+        Binding("escape,enter,question_mark,q", "close", "Close", key_display="Esc", id="explanation.close"),
     ]
 
     def __init__(self, field: FieldDescription, text: str = "", auto: str = "") -> None:
@@ -99,7 +97,7 @@ class ExplanationScreen(ModalScreen[None]):
             for heading, words in self._said:
                 yield _Line(heading, words, width)
         panel.border_title = Text(self.field.title).markup
-        panel.border_subtitle = "Esc closes"
+        panel.border_subtitle = "Esc closes · F1 tells of the view"
 
     def action_close(self) -> None:
         """Go back to the form."""

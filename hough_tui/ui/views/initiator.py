@@ -19,6 +19,7 @@ from algorithms.initiators.registry import initiators
 from algorithms.parameters import Problem
 from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.messages import ElementAdded, ElementRemoved
+from hough_tui.ui.naming import free_name
 from hough_tui.ui.screens.choice import Choice
 from scenarios.model import InitiatorEntry, Scenario, ScenarioSet
 
@@ -155,7 +156,7 @@ class InitiatorView(Widget):
     def _insert(self, data: dict[str, Any], name: str) -> None:
         assert self._given is not None
         taken = {entry.name for entry in self._given.initiators}
-        free = next(found for found in _numbered(name) if found not in taken)
+        free = free_name(name, taken)
         algorithm = data.get("initiator", name)
         at = len(self._given.initiators)
         self._index = at
@@ -165,11 +166,3 @@ class InitiatorView(Widget):
         """Take the chosen initiator out of the set."""
         if self._given is not None and self._given.initiators:
             self.post_message(ElementRemoved(("initiators", self._index)))
-
-
-def _numbered(name: str) -> Any:
-    yield name
-    number = 2
-    while True:
-        yield f"{name}-{number}"
-        number += 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from typing import ClassVar
 
 from textual import on, work
@@ -13,10 +14,12 @@ from textual.timer import Timer
 from textual.widget import Widget
 from textual.widgets import Static
 
+from algorithms.parameters import Problem
 from hough_tui.ui.screens.question import telling
 from hough_tui.ui.views.pace import Pace, duration
 from hough_tui.ui.views.running import Asked, Ended, Event, Filled, Running, Started, keep
 from hough_tui.ui.views.shown_run import LiveRun
+from hough_tui.ui.widgets.experiment_form import ExperimentForm
 from hough_tui.ui.widgets.rate_panel import RatePanel
 from hough_tui.ui.widgets.run_form import RunForm, asked_name, asked_text, asked_words
 from hough_tui.ui.widgets.run_line import RunLine
@@ -39,7 +42,8 @@ class MonteCarloView(Widget):
         "the targets. Enter opens the trials behind a row, the failed ones first, and from there one trial "
         "in Look. s sorts by the next column, S the other way. The chart shows any metric (m) against the "
         "swept field, with its 95 % interval, or the ratio of false tracks by trial of the row under the "
-        "cursor (t). e exports a finished run, y copies the table. A finished run is kept: see Results."
+        "cursor (t). F9 shows the form of the experiment: what runs, what is swept, what counts. "
+        "e exports a finished run, y copies the table. A finished run is kept: see Results."
     )
     DEFAULT_CSS = """
     MonteCarloView { layout: vertical; height: 1fr; background: $surface; }
@@ -48,9 +52,13 @@ class MonteCarloView(Widget):
     MonteCarloView Hint:focus { color: $foreground; }
     MonteCarloView.-empty RatePanel { display: none; }
     MonteCarloView.-filled Hint { display: none; }
+    MonteCarloView ExperimentForm { display: none; }
+    MonteCarloView.-editing ExperimentForm { display: block; }
+    MonteCarloView.-editing Hint, MonteCarloView.-editing RatePanel { display: none; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("r", "run", "Run", id="monte-carlo.run", show=False),
+        Binding("f9", "edit", "Form of the experiment, or rates", id="monte-carlo.form", show=False),
         Binding("x,escape", "cancel", "Cancel", id="monte-carlo.cancel"),
         Binding("w", "keep", "Keep the run", id="monte-carlo.keep"),
     ]
@@ -85,6 +93,8 @@ class MonteCarloView(Widget):
 
     def __init__(self) -> None:
         super().__init__(classes="-empty")
+        self._given: ScenarioSet | None = None
+        self._added = ""
         self._reason: str | None = None
         self._asked: Asked | None = None
         self._current: Running | None = None
@@ -100,6 +110,7 @@ class MonteCarloView(Widget):
         yield RunLine()
         yield Hint(markup=False)
         yield RatePanel()
+        yield ExperimentForm()
 
     def on_mount(self) -> None:
         """Prepare to look at the progress of a run."""
@@ -113,7 +124,12 @@ class MonteCarloView(Widget):
 
     def show_set(self, given: ScenarioSet) -> None:
         """Offer the experiments of the set as it is now; results stay."""
+        self._given = given
         self.query_one(RunForm).show_set(given)
+        if self._added in (experiment.name for experiment in given.experiments):
+            self.query_one(RunForm).choose_name(self._added)
+            self._added = ""
+        self._show_form()
         self._tell_idle()
 
     def set_runnable(self, reason: str | None) -> None:
@@ -127,7 +143,9 @@ class MonteCarloView(Widget):
 
     def take_focus(self) -> None:
         """Put the focus where the keys of the view work."""
-        if self.has_class("-empty"):
+        if self.has_class("-editing"):
+            self.query_one(ExperimentForm).take_focus()
+        elif self.has_class("-empty"):
             self.query_one(Hint).focus()
         else:
             self.query_one(RatePanel).take_focus()
@@ -205,7 +223,7 @@ class MonteCarloView(Widget):
     def _start(self, live: LiveRun) -> None:
         self._live, self._pace = live, Pace(live.job.plan.trials)
         is_focused = self.query_one(Hint).has_focus
-        self.set_classes("-filled")
+        self.set_classes("-filled")  # and no form any more: whoever runs wants to see the rates
         self.query_one(RatePanel).show(live)
         if is_focused:
             self.call_after_refresh(self.take_focus)
@@ -267,8 +285,28 @@ class MonteCarloView(Widget):
 
     # What is asked
 
+    def action_edit(self) -> None:
+        """Show the form of the experiment in place of the rates, or the rates again."""
+        self.set_class(not self.has_class("-editing"), "-editing")
+        self.take_focus()
+
+    def refuse(self, found: Sequence[Problem]) -> None:
+        """Show why the last edit was not taken."""
+        self.query_one(ExperimentForm).refuse(found)
+
+    def _show_form(self) -> None:
+        if self._given is not None:
+            chosen = self.query_one(RunForm).experiments
+            self.query_one(ExperimentForm).show(self._given, chosen[0] if chosen else None)
+
+    @on(ExperimentForm.Added)
+    def _choose_added(self, event: ExperimentForm.Added) -> None:
+        event.stop()
+        self._added = event.name  # the set that has it is yet to come
+
     @on(RunForm.Changed)
     def _asked_changed(self) -> None:
+        self._show_form()
         self._tell_idle()
 
     def _read(self) -> Asked | str:

@@ -55,12 +55,15 @@ class RunForm(Horizontal):
 
     def show_set(self, given: ScenarioSet) -> None:
         """Offer the experiments of the set as it is now."""
-        before, self._given = self._given, given
+        before = [experiment.name for experiment in self.experiments_of_set]
+        is_first, self._given = self._given is None, given
         names = [experiment.name for experiment in given.experiments]
-        if before is None or names != [experiment.name for experiment in before.experiments]:
+        if is_first or names != before:
             values = names if len(names) < 2 else [*names, ALL]
             select = self.query_one(Select)
             chosen = select.value
+            if chosen in before and len(names) == len(before):
+                chosen = names[before.index(chosen)]  # one that was renamed stays chosen
             with self.prevent(Select.Changed):
                 select.set_options([(name or f"all {len(names)} experiments", name) for name in values])
                 if values:
@@ -81,14 +84,23 @@ class RunForm(Horizontal):
     def choose(self, index: int) -> None:
         """Choose an experiment by its place in the set."""
         if self._given is not None and index < len(self._given.experiments):
-            self.query_one(Select).value = self._given.experiments[index].name
+            self.choose_name(self._given.experiments[index].name)
+
+    def choose_name(self, name: str) -> None:
+        """Choose an experiment by its name, if the set has it."""
+        if any(experiment.name == name for experiment in self.experiments_of_set):
+            self.query_one(Select).value = name
+
+    @property
+    def experiments_of_set(self) -> list[Experiment]:
+        """All experiments of the set."""
+        return self._given.experiments if self._given is not None else []
 
     @property
     def experiments(self) -> list[Experiment]:
         """The experiments that are chosen."""
         name = self.query_one(Select).value
-        known = self._given.experiments if self._given is not None else []
-        return [experiment for experiment in known if name in (ALL, experiment.name)]
+        return [experiment for experiment in self.experiments_of_set if name in (ALL, experiment.name)]
 
     def read(self) -> Asked | str:
         """Return what is asked for, or what is wrong."""

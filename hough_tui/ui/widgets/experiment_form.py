@@ -1,0 +1,101 @@
+"""The form of an experiment: what runs on what, what is swept, and what counts as success."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.containers import Horizontal, Vertical
+from textual.message import Message
+from textual.widgets import Button, Static
+
+from algorithms.parameters import Problem
+from hough_tui.ui.forms.model_form import ModelForm
+from hough_tui.ui.messages import ElementAdded, ElementRemoved
+from hough_tui.ui.naming import free_name
+from scenarios.model import Experiment, ScenarioSet
+
+LEAST_PLOTS = 3
+"""Plots of a target that a track must hold by the criterion of a new experiment."""
+
+
+class ExperimentForm(Vertical):
+    """One experiment of the set, to be edited; others are added and removed here too."""
+
+    DEFAULT_CSS = """
+    ExperimentForm { height: 1fr; }
+    ExperimentForm Horizontal { height: 1; padding: 0 1; }
+    ExperimentForm Horizontal Static { width: 1fr; color: $text-muted; }
+    ExperimentForm Horizontal Static { text-wrap: nowrap; text-overflow: ellipsis; }
+    ExperimentForm Button { min-width: 8; margin-left: 1; }
+    """
+    ACTIONS: ClassVar[dict[str, str]] = {"add": "New", "copy": "Copy", "remove": "Remove"}
+
+    class Added(Message):
+        """An experiment was added, under a name."""
+
+        def __init__(self, name: str) -> None:
+            super().__init__()
+            self.name = name
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._given: ScenarioSet | None = None
+        self._index = 0
+
+    def compose(self) -> ComposeResult:
+        """Lay out what can be done to the list above the form."""
+        with Horizontal():
+            yield Static("", markup=False)
+            for action, label in self.ACTIONS.items():
+                yield Button(label, id=action, compact=True)
+        yield ModelForm()
+
+    def show(self, given: ScenarioSet, chosen: Experiment | None) -> None:
+        """Show an experiment of the set; None where it has none."""
+        self._given = given
+        form = self.query_one(ModelForm)
+        form.display = chosen is not None
+        for action in ("copy", "remove"):
+            self.query_one(f"#{action}", Button).disabled = chosen is None
+        self.query_one(Static).update(
+            "Names are those of the tree; a sweep: scans: 5, 10, 15"
+            if chosen
+            else "The set has no experiment"
+        )
+        if chosen is not None:
+            self._index = given.experiments.index(chosen)
+            unit = given.chosen_scenarios(chosen)[0].unit
+            form.load(chosen, ("experiments", self._index), unit=unit)
+
+    def refuse(self, found: Sequence[Problem]) -> None:
+        """Show why the last edit was not taken."""
+        self.query_one(ModelForm).problems(found)
+
+    def take_focus(self) -> None:
+        """Put the focus where one can go on at once."""
+        if self._given is not None and self._given.experiments:
+            self.query_one(ModelForm).focus_first()
+        else:
+            self.query_one("#add", Button).focus()
+
+    @on(Button.Pressed)
+    def _pressed(self, event: Button.Pressed) -> None:
+        event.stop()
+        if self._given is None:
+            return
+        if event.button.id == "remove":
+            self.post_message(ElementRemoved(("experiments", self._index)))
+        elif event.button.id == "copy":
+            before = self._given.experiments[self._index]
+            self._add(before.model_dump(mode="json", exclude_unset=True))
+        else:
+            self._add({"name": "experiment", "criterion": {"plots": LEAST_PLOTS}})
+
+    def _add(self, data: dict[str, Any]) -> None:
+        assert self._given is not None
+        name = free_name(data["name"], [experiment.name for experiment in self._given.experiments])
+        self.post_message(ElementAdded(("experiments", len(self._given.experiments)), {**data, "name": name}))
+        self.post_message(self.Added(name))
