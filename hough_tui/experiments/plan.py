@@ -10,11 +10,11 @@ from algorithms.parameters import Parameters, unknown
 from scenarios.model import Experiment, InitiatorEntry, MatchCriterion, Scenario, ScenarioSet
 from scenarios.sweeps import points
 
-LARGEST_CHUNK = 500
+LARGEST_CHUNK = 200
 """Trials of the largest chunk."""
 
-PLOTS_A_CHUNK = 200_000
-"""Plots that a chunk is expected to hold: a few tens of milliseconds of work."""
+PLOTS_A_CHUNK = 60_000
+"""Plots that a chunk is expected to hold: some twenty milliseconds of work, after which it can be cancelled."""
 
 
 MOST_BYTES = 4 * 2**30
