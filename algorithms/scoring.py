@@ -25,11 +25,17 @@ class Criterion:
     theta : greatest difference in θ, radians; None compares ρ alone, as it stands in normal
         form, which is how the course report counts
     plots : least number of a track's plots that came from the target; None to match by line
+    mid_track : whether ρ is compared about the middle of the target's path, not about the origin,
+        where a difference in θ moves it by the distance of the target; asks for `theta`
+    nearest : whether a track matches, of the targets within both bounds, only the one that is
+        nearest in them (by the sum of squares of the two differences, each in its bound)
     """
 
     rho: float | None = None
     theta: float | None = None
     plots: int | None = None
+    mid_track: bool = False
+    nearest: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,13 +44,21 @@ class Truth:
 
     Attributes
     ----------
-    theta, rho : float64 (targets,), their lines in normal form; NaN for a target that stands still
+    theta, rho : float64 (trials, targets), their lines in normal form; NaN for a target that
+        stands still
+    middle : float64 (trials, targets, 2), the middle of each target's path
     origin : int32 (plots of the chunk,), the target that caused each plot, −1 for clutter
     """
 
     theta: NDArray[np.float64]
     rho: NDArray[np.float64]
+    middle: NDArray[np.float64]
     origin: NDArray[np.int32]
+
+    @property
+    def targets(self) -> int:
+        """Number of targets."""
+        return int(self.theta.shape[1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,10 +91,35 @@ def _matches_line(angle, distance, plain, tolerance_rho, tolerance_theta):  # ty
 
 
 @kernel
+def _line_differences(theta, rho, true_theta, true_rho, x, y, mid_track):  # type: ignore[no-untyped-def]
+    """Return the signed differences of two lines in θ and in ρ, ρ about (x, y) where that is asked for."""
+    angle, distance = separation(theta, rho, true_theta, true_rho)
+    if mid_track:
+        distance = rho - x * np.cos(theta) - y * np.sin(theta)
+    return angle, distance
+
+
+@kernel
+def _nearest(theta, rho, true_theta, true_rho, middle, tolerance_rho, tolerance_theta, mid_track):  # type: ignore[no-untyped-def]
+    """Return the nearest of the targets within both tolerances, −1 where there is none."""
+    best, least = -1, np.inf
+    for target in range(len(true_theta)):
+        angle, distance = _line_differences(
+            theta, rho, true_theta[target], true_rho[target], middle[target, 0], middle[target, 1], mid_track
+        )
+        if abs(angle) <= tolerance_theta and abs(distance) <= tolerance_rho:
+            apart = (angle / tolerance_theta) ** 2 + (distance / tolerance_rho) ** 2
+            if apart < least:
+                best, least = target, apart
+    return best
+
+
+@kernel
 def _score(  # type: ignore[no-untyped-def]
-    offsets, theta, rho, rank, shared, true_theta, true_rho, tolerance_rho, tolerance_theta, least_plots
-):
-    trials, targets = len(offsets) - 1, len(true_theta)
+    offsets, theta, rho, rank, shared, true_theta, true_rho, middle, tolerance_rho, tolerance_theta,
+    least_plots, mid_track, nearest,
+):  # fmt: skip
+    trials, targets = true_theta.shape
     found = np.zeros((trials, targets), np.bool_)
     false, duplicates = np.zeros(trials, np.int64), np.zeros(trials, np.int64)
     state = np.full(len(theta), FALSE, np.int8)
@@ -90,13 +129,23 @@ def _score(  # type: ignore[no-untyped-def]
     for trial in range(trials):
         best[:] = -np.inf
         for track in range(offsets[trial], offsets[trial + 1]):
-            matches, is_new = False, False
+            matches, is_new, only = False, False, -1
+            if nearest:
+                only = _nearest(
+                    theta[track], rho[track], true_theta[trial], true_rho[trial], middle[trial],
+                    tolerance_rho, tolerance_theta, mid_track,
+                )  # fmt: skip
             for target in range(targets):
-                angle, distance = separation(theta[track], rho[track], true_theta[target], true_rho[target])
+                angle, distance = _line_differences(
+                    theta[track], rho[track], true_theta[trial, target], true_rho[trial, target],
+                    middle[trial, target, 0], middle[trial, target, 1], mid_track,
+                )  # fmt: skip
                 if least_plots > 0:
                     matched = shared[track, target] >= least_plots
+                elif nearest:
+                    matched = target == only
                 else:
-                    plain = rho[track] - true_rho[target]
+                    plain = rho[track] - true_rho[trial, target]
                     matched = _matches_line(angle, distance, plain, tolerance_rho, tolerance_theta)
                 if not matched:
                     continue
@@ -142,13 +191,13 @@ def score(tracks: TrackChunk, truth: Truth, plot_offsets: NDArray[np.int64], cri
     least = 0 if criterion.plots is None else criterion.plots
     if least:
         assert tracks.plots is not None
-        shared = _shared(tracks.plots, tracks.offsets, plot_offsets, truth.origin, len(truth.theta))
+        shared = _shared(tracks.plots, tracks.offsets, plot_offsets, truth.origin, truth.targets)
     else:
         shared = np.zeros((0, 0), np.int64)
     columns = _score(
-        tracks.offsets, tracks.theta, tracks.rho, tracks.score, shared, truth.theta, truth.rho,
+        tracks.offsets, tracks.theta, tracks.rho, tracks.score, shared, truth.theta, truth.rho, truth.middle,
         np.nan if criterion.rho is None else criterion.rho,
         np.nan if criterion.theta is None else criterion.theta,
-        least,
+        least, criterion.mid_track, criterion.nearest,
     )  # fmt: skip
     return Scores(*columns)

@@ -78,14 +78,66 @@ class CartesianSensor(Declared):
         return self.sigma if isinstance(self.sigma, tuple) else (self.sigma, self.sigma)
 
 
-class PoissonClutter(Declared):
-    """Plots that no target caused: a Poisson number a scan, uniform over a region."""
+class Clutter(Declared):
+    """Plots that no target caused, uniform over an area."""
+
+    kind: str = parameter("poisson", help="how the number of plots is drawn")
+    over: Literal["region", "targets"] = parameter(
+        "region", help="the area: a region, or the box around the true paths of the targets"
+    )
+    region: Region | None = parameter(None, help="where they lie; the scenario's region where none is given")
+
+    @classmethod
+    def is_meant(cls, data: Mapping[str, Any]) -> bool:
+        """Return whether data are of this kind of clutter; without a kind they are of the Poisson one."""
+        return bool(_clutter_kind(data) == cls.model_fields["kind"].default)
+
+    @model_validator(mode="after")
+    def _one_area(self) -> Self:
+        if self.over == "targets" and self.region is not None:
+            raise ValueError("region is given with over: targets; leave one of them out")
+        return self
+
+
+class PoissonClutter(Clutter):
+    """Clutter of a Poisson number of plots a scan."""
 
     kind: Literal["poisson"] = parameter("poisson", help="how the number of plots is drawn")
     rate: Annotated[NotNegative, Field(le=1e6)] = parameter(
         dimension=Dimension.COUNT, help="mean number λ of plots a scan"
     )
-    region: Region | None = parameter(None, help="where they lie; the scenario's region where none is given")
+
+    def expected(self, scans: int) -> float:
+        """Return the number of plots that a batch is expected to hold."""
+        return scans * self.rate
+
+
+class ExactClutter(Clutter):
+    """Clutter of a fixed number of plots."""
+
+    kind: Literal["exact"] = parameter("exact", help="how the number of plots is drawn")
+    count: Annotated[Whole, Field(le=MOST_PLOTS)] = parameter(
+        dimension=Dimension.COUNT, help="the number of plots"
+    )
+    per: Literal["scan", "batch"] = parameter(
+        "scan", help="what holds that number: each scan, or the batch, each plot then in a random scan"
+    )
+
+    def expected(self, scans: int) -> float:
+        """Return the number of plots of a batch."""
+        return float(self.count * scans if self.per == "scan" else self.count)
+
+
+def _clutter_kind(given: Any) -> Any:
+    if isinstance(given, Mapping):
+        return given.get("kind", "poisson")
+    return getattr(given, "kind", None)
+
+
+AnyClutter = Annotated[
+    Annotated[PoissonClutter, Tag("poisson")] | Annotated[ExactClutter, Tag("exact")],
+    Discriminator(_clutter_kind),
+]
 
 
 class Target(Declared):
@@ -97,6 +149,11 @@ class Target(Declared):
     birth: Whole = parameter(0, dimension=Dimension.COUNT, help="the first scan in which it is there")
     death: Whole | None = parameter(
         None, dimension=Dimension.COUNT, help="the last scan in which it is there; none: to the end"
+    )
+    spread: NotNegative | tuple[NotNegative, NotNegative] = parameter(
+        0.0,
+        dimension=Dimension.LENGTH,
+        help="how far from `position` it may begin, uniform from draw to draw, for both axes or [x, y]",
     )
 
     @model_validator(mode="after")
@@ -113,6 +170,21 @@ class Target(Declared):
         """Whether it has no line."""
         return not any(self.velocity)
 
+    @property
+    def spread_axes(self) -> tuple[float, float]:
+        """How far from `position` it may begin, on x and on y."""
+        return self.spread if isinstance(self.spread, tuple) else (self.spread, self.spread)
+
+    def present(self, scans: int) -> range:
+        """Return the scans of a batch in which it is there."""
+        return range(self.birth, scans if self.death is None else min(self.death + 1, scans))
+
+    def ends(self, scans: int, interval: float) -> tuple[Vector, Vector]:
+        """Return where its path begins and ends within a batch, as it is without `spread`."""
+        (x, y), (vx, vy) = self.position, self.velocity
+        elapsed = interval * max(0, len(self.present(scans)) - 1)
+        return (x, y), (x + vx * elapsed, y + vy * elapsed)
+
 
 class Scenario(Declared):
     """A piece of the world: targets, clutter, a sensor and its scans."""
@@ -126,18 +198,39 @@ class Scenario(Declared):
     interval: Positive = parameter(dimension=Dimension.TIME, help="time T between scans, in seconds")
     region: Region = parameter(help="the region under surveillance")
     sensor: CartesianSensor = parameter(help="what measures")
-    clutter: list[PoissonClutter] = parameter(default_factory=list, help="sources of clutter; they add up")
+    clutter: list[AnyClutter] = parameter(default_factory=list, help="sources of clutter; they add up")
     targets: list[Target] = parameter(default_factory=list, help="the targets")
 
     @model_validator(mode="after")
     def _is_drawable(self) -> Self:
-        plots = self.scans * (sum(source.rate for source in self.clutter) + len(self.targets))
-        if plots > MOST_PLOTS:
+        if self.expected_plots > MOST_PLOTS:
             raise ValueError(
-                f"a trial would hold about {plots:,.0f} plots; the limit is {MOST_PLOTS:,}; "
+                f"a trial would hold about {self.expected_plots:,.0f} plots; the limit is {MOST_PLOTS:,}; "
                 "give fewer scans or less clutter"
             )
+        if not self.targets and any(source.over == "targets" for source in self.clutter):
+            raise ValueError(
+                "clutter is over: targets, and there is no target; give a target, or clutter over: region"
+            )
         return self
+
+    @property
+    def expected_clutter(self) -> float:
+        """The number of plots of clutter that a batch is expected to hold."""
+        return sum(source.expected(self.scans) for source in self.clutter)
+
+    @property
+    def expected_plots(self) -> float:
+        """The number of plots that a batch holds at the most, clutter as expected."""
+        return self.expected_clutter + self.scans * len(self.targets)
+
+    def area(self, source: Clutter) -> Box:
+        """Return where the plots of a source of clutter lie."""
+        if source.over == "region":
+            return (source.region or self.region).box
+        ends = [end for target in self.targets for end in target.ends(self.scans, self.interval)]
+        axes = list(zip(*ends, strict=True))
+        return Box(tuple(map(min, axes)), tuple(map(max, axes)))
 
     @property
     def context(self) -> Context:
@@ -228,6 +321,14 @@ class MatchCriterion(Declared):
     rho: Positive | None = parameter(
         None, dimension=Dimension.LENGTH, help="greatest difference in ρ; none: match by plots"
     )
+    at: Literal["origin", "mid-track"] = parameter(
+        "origin",
+        help="where the lines are compared: at the origin of coordinates, as ρ is, or at the middle of the "
+        "target's path",
+    )
+    nearest: Flag = parameter(
+        False, help="whether a track matches only the nearest of the targets within the bounds"
+    )
     theta_deg: Annotated[Positive, Field(le=90)] | None = parameter(
         None,
         dimension=Dimension.ANGLE,
@@ -241,22 +342,35 @@ class MatchCriterion(Declared):
     def _one_way(self) -> Self:
         if (self.rho is None) == (self.plots is None):
             raise ValueError("exactly one of rho and plots must be given: match by line, or by shared plots")
-        if self.plots is not None and self.theta_deg is not None:
-            raise ValueError("theta_deg is given with plots; it goes with rho only")
+        if self.plots is not None:
+            for name, given in (
+                ("theta_deg", self.theta_deg is not None),
+                ("at: mid-track", self.at != "origin"),
+                ("nearest", self.nearest),
+            ):
+                if given:
+                    raise ValueError(f"{name} is given with plots; it goes with rho only")
+        elif self.theta_deg is None and (self.at != "origin" or self.nearest):
+            raise ValueError("at: mid-track and nearest compare lines by θ and ρ; give theta_deg too")
         return self
 
     @property
     def value(self) -> Criterion:
         """The criterion as the scorer takes it."""
         theta = None if self.theta_deg is None else math.radians(self.theta_deg)
-        return Criterion(self.rho, theta, self.plots)
+        return Criterion(self.rho, theta, self.plots, mid_track=self.at == "mid-track", nearest=self.nearest)
 
     @property
-    def document(self) -> dict[str, float | int | None]:
+    def document(self) -> dict[str, float | int | str | None]:
         """The criterion as it is printed with results."""
         if self.plots is not None:
             return {"plots": self.plots}
-        return {"rho": self.rho, "theta_deg": self.theta_deg}
+        told: dict[str, float | int | str | None] = {"rho": self.rho, "theta_deg": self.theta_deg}
+        if self.at != "origin":
+            told["at"] = self.at
+        if self.nearest:
+            told["nearest"] = True
+        return told
 
 
 class Experiment(Declared):

@@ -311,8 +311,8 @@ def write_plots(draw: Draw, scenario: Scenario) -> str:
         if origin >= 0:
             target = scenario.targets[origin]
             elapsed = (scan - target.birth) * scenario.interval
-            moved = zip(target.position, target.velocity, strict=True)
-            truth = [origin, *(place + speed * elapsed for place, speed in moved)]
+            moved = zip(target.position, draw.shift[0, origin].tolist(), target.velocity, strict=True)
+            truth = [origin, *(place + shift + speed * elapsed for place, shift, speed in moved)]
         writer.writerow([scan, time, x, y, *truth])
     return file.getvalue()
 

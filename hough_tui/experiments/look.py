@@ -15,7 +15,7 @@ from algorithms.scoring import score
 from algorithms.tracks import Tracks
 from hough_tui.experiments.plain import gathered
 from scenarios.model import InitiatorEntry, MatchCriterion, Scenario
-from scenarios.simulate import Draw, World, draw, truth
+from scenarios.simulate import Draw, World, draw, true_paths, truth
 
 MOST_TRACKS = 500
 """How many tracks of a trial are looked at; nobody looks at more, and each must find its plots."""
@@ -28,17 +28,28 @@ class Picture:
     Attributes
     ----------
     scenario, seed, trial : which draw
-    plots : what the sensor saw
-    origin : int32 (n,), the target that caused each plot, −1 for clutter
-    paths : for each target its true positions, float64 (scans it is there, 2)
+    drawn : its plots, with what caused each
     """
 
     scenario: Scenario
     seed: int
     trial: int
-    plots: Plots
-    origin: NDArray[np.int32]
-    paths: tuple[NDArray[np.float64], ...]
+    drawn: Draw
+
+    @property
+    def plots(self) -> Plots:
+        """What the sensor saw."""
+        return self.drawn.chunk.trial(0)
+
+    @property
+    def origin(self) -> NDArray[np.int32]:
+        """The target that caused each plot, −1 for clutter: int32 (n,)."""
+        return self.drawn.origin
+
+    @property
+    def paths(self) -> tuple[NDArray[np.float64], ...]:
+        """The true positions of each target, float64 (scans it is there, 2)."""
+        return true_paths(self.scenario, self.drawn.shift[0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,18 +79,7 @@ class TrialLook:
 
 def picture(scenario: Scenario, seed: int, trial: int) -> Picture:
     """Return a draw of a scenario."""
-    drawn = draw(World.of(scenario), seed, trial)
-    return Picture(scenario, seed, trial, drawn.chunk.trial(0), drawn.origin, true_paths(scenario))
-
-
-def true_paths(scenario: Scenario) -> tuple[NDArray[np.float64], ...]:
-    """Return the true positions of each target in the scans in which it is there."""
-    paths = []
-    for target in scenario.targets:
-        last = scenario.scans - 1 if target.death is None else min(target.death, scenario.scans - 1)
-        elapsed = np.arange(max(0, last - target.birth + 1)) * scenario.interval
-        paths.append(np.array(target.position) + elapsed[:, None] * np.array(target.velocity))
-    return tuple(paths)
+    return Picture(scenario, seed, trial, draw(World.of(scenario), seed, trial))
 
 
 def look(
@@ -108,6 +108,5 @@ def look(
 
 
 def _states(seen: Picture, tracks: Tracks, criterion: MatchCriterion) -> NDArray[np.int8]:
-    chunk = seen.plots.chunk()
-    known = truth(seen.scenario, Draw(chunk, seen.origin))
-    return score(gathered([tracks]), known, chunk.offsets, criterion.value).state
+    known = truth(seen.scenario, seen.drawn)
+    return score(gathered([tracks]), known, seen.drawn.chunk.offsets, criterion.value).state

@@ -14,7 +14,7 @@ LARGEST_CHUNK = 200
 """Trials of the largest chunk."""
 
 PLOTS_A_CHUNK = 60_000
-"""Plots that a chunk is expected to hold: some twenty milliseconds of work, after which it can be cancelled."""
+"""Plots that a chunk is expected to hold: some twenty milliseconds of work, not to be interrupted."""
 
 
 MOST_BYTES = 4 * 2**30
@@ -72,9 +72,7 @@ class SharedDraws:
     @property
     def chunk(self) -> int:
         """Trials of a chunk; it depends on the scenario alone, never on the number of workers."""
-        sources = sum(source.rate for source in self.scenario.clutter) + len(self.scenario.targets)
-        expected = max(1.0, self.scenario.scans * sources)
-        return max(1, min(LARGEST_CHUNK, int(PLOTS_A_CHUNK / expected)))
+        return max(1, min(LARGEST_CHUNK, int(PLOTS_A_CHUNK / max(1.0, self.scenario.expected_plots))))
 
 
 @dataclass(frozen=True, slots=True)

@@ -47,7 +47,7 @@ def criterion_words(criterion: Mapping[str, Any] | None, unit: str) -> str:
 
     Parameters
     ----------
-    criterion : `rho`, `theta_deg`, `plots`, each a number or null
+    criterion : `rho`, `theta_deg`, `plots`, each a number or null; `at`, `nearest` where they matter
     unit : of length; empty where the rows have several
     """
     given = {key: as_given(value) for key, value in (criterion or {}).items() if value is not None}
@@ -62,8 +62,12 @@ def criterion_words(criterion: Mapping[str, Any] | None, unit: str) -> str:
     if not clauses:
         return ""
     words = " and ".join(clauses)
+    if "at" in given:
+        words += ", ρ compared about the middle of its path"
     if "rho" in given and "theta_deg" not in given:
         words += ", θ not compared"
+    if "nearest" in given:
+        words += "; of several such targets, the nearest alone"
     return f"A track matches a target when {words}."
 
 

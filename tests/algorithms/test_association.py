@@ -247,7 +247,9 @@ def test_velocities_in_the_course_report_scene(course):
     for trial in range(trials):
         states = one_trial(chunk, found, trial)
         origin = drawn.origin[chunk.offsets[trial] :]
-        for number, (target, *line) in enumerate(zip(scenario.targets, *true_lines(scenario), strict=True)):
+        for number, (target, *line) in enumerate(
+            zip(scenario.targets, *true_lines(scenario, drawn.shift[trial]), strict=True)
+        ):
             angle, distance = line_distance(states.theta, states.rho, *line)
             matching = np.flatnonzero((angle <= math.radians(6)) & (distance <= 3.0))
             if len(matching):

@@ -26,11 +26,18 @@ def track_chunk(trials):
     return TrackChunk(offsets, theta, rho, rank, np.zeros(len(trials), np.int64), plots)
 
 
-def truth_of(targets, origins=()):
-    lines = np.array(targets, dtype=float).reshape(-1, 2)
-    return Truth(
-        np.ascontiguousarray(lines[:, 0]), np.ascontiguousarray(lines[:, 1]), np.array(origins, np.int32)
-    )
+ALONG = 7.0
+"""How far the middle of each target's path lies along its line from the foot of the origin."""
+
+
+def middle_of(theta, rho):
+    return rho * np.cos(theta) - ALONG * np.sin(theta), rho * np.sin(theta) + ALONG * np.cos(theta)
+
+
+def truth_of(targets, origins=(), trials=1):
+    lines = np.tile(np.array(targets, dtype=float).reshape(-1, 2), (trials, 1, 1))
+    theta, rho = np.ascontiguousarray(lines[..., 0]), np.ascontiguousarray(lines[..., 1])
+    return Truth(theta, rho, np.stack(middle_of(theta, rho), axis=-1), np.array(origins, np.int32))
 
 
 def apart(theta, rho, true_theta, true_rho):
@@ -47,9 +54,12 @@ def brute_force(trials, targets, origins, criterion):
         matching = {target: [] for target in range(len(targets))}
         states, seen = [], set()
         for number, (theta, rho, rank, plots) in enumerate(trial):
-            matched = set()
+            matched, apartness = set(), {}
             for target, line in enumerate(targets):
                 angle, distance = apart(theta, rho, *line)
+                if criterion.mid_track:
+                    x, y = middle_of(*line)
+                    distance = rho - x * math.cos(theta) - y * math.sin(theta)
                 if criterion.plots is not None:
                     fits = sum(origin[row] == target for row in plots) >= criterion.plots
                 elif criterion.theta is None:
@@ -58,7 +68,16 @@ def brute_force(trials, targets, origins, criterion):
                     fits = abs(angle) <= criterion.theta and abs(distance) <= criterion.rho
                 if fits:
                     matched.add(target)
-                    matching[target].append((-rank, abs(distance), number, angle, distance))
+                if fits and criterion.nearest:
+                    apartness[target] = math.hypot(angle / criterion.theta, distance / criterion.rho)
+            if criterion.nearest and matched:
+                matched = {min(matched, key=apartness.__getitem__)}
+            for target in matched:
+                angle, distance = apart(theta, rho, *targets[target])
+                if criterion.mid_track:
+                    x, y = middle_of(*targets[target])
+                    distance = rho - x * math.cos(theta) - y * math.sin(theta)
+                matching[target].append((-rank, abs(distance), number, angle, distance))
             states.append(FALSE if not matched else DUPLICATE if matched <= seen else FINDER)
             seen |= matched
         best = [min(found)[3:] if found else (math.nan, math.nan) for found in matching.values()]
@@ -76,6 +95,13 @@ target_lines = st.lists(st.tuples(angles, lengths), max_size=3)
 criteria = st.one_of(
     st.builds(Criterion, rho=st.sampled_from([0.5, 1.0, 3.0])),
     st.builds(Criterion, rho=st.sampled_from([0.5, 1.0]), theta=st.sampled_from([0.125, 0.3, 0.5])),
+    st.builds(
+        Criterion,
+        rho=st.sampled_from([0.5, 1.0]),
+        theta=st.sampled_from([0.13, 0.3, 0.5]),
+        mid_track=st.just(True),
+        nearest=st.booleans(),
+    ),
     st.builds(Criterion, plots=st.integers(1, 4)),
 )
 
@@ -86,7 +112,9 @@ def test_scores_are_those_of_a_loop_over_trials_tracks_and_targets(data, trials,
     origin = st.lists(st.integers(-1, len(targets) - 1), min_size=8, max_size=8)
     origins = [data.draw(origin) for _ in trials]
     plot_offsets = np.arange(len(trials) + 1) * 8
-    found = score(track_chunk(trials), truth_of(targets, np.ravel(origins)), plot_offsets, criterion)
+    found = score(
+        track_chunk(trials), truth_of(targets, np.ravel(origins), len(trials)), plot_offsets, criterion
+    )
     expected = brute_force(trials, targets, origins, criterion)
     assert found.found.shape == (len(trials), len(targets))
     assert found.state.tolist() == [state for _, states, _ in expected for state in states]
@@ -155,7 +183,7 @@ def test_bounds_of_a_criterion_belong_to_it():
 
 def test_rows_of_plots_count_from_the_beginning_of_their_trial():
     trials = [[(1.0, 0.0, 3.0, [0, 1])], [(1.0, 0.0, 3.0, [0, 1])]]
-    truth = truth_of([(0.0, 0.0), (0.0, 9.0)], [0, 0, -1, 1, 1])
+    truth = truth_of([(0.0, 0.0), (0.0, 9.0)], [0, 0, -1, 1, 1], 2)
     found = score(track_chunk(trials), truth, np.array([0, 3, 5]), Criterion(plots=2))
     assert found.found.tolist() == [[True, False], [False, True]]
 
@@ -178,10 +206,44 @@ def test_a_target_that_stands_still_is_matched_by_plots_alone():
 
 def test_trials_without_tracks_and_truth_without_targets():
     nothing = score(
-        track_chunk([[], [(1.0, 0.0, 1.0, [])], []]), truth_of([]), np.zeros(4, np.int64), Criterion(rho=1.0)
+        track_chunk([[], [(1.0, 0.0, 1.0, [])], []]),
+        truth_of([], trials=3),
+        np.zeros(4, np.int64),
+        Criterion(rho=1.0),
     )
     assert nothing.found.shape == (3, 0)
     assert nothing.false.tolist() == [0, 1, 0]
-    missed = score(track_chunk([[], []]), truth_of([(1.0, 2.0)]), np.zeros(3, np.int64), Criterion(rho=1.0))
+    missed = score(
+        track_chunk([[], []]), truth_of([(1.0, 2.0)], trials=2), np.zeros(3, np.int64), Criterion(rho=1.0)
+    )
     assert missed.found.tolist() == [[False], [False]]
     assert np.isnan(missed.rho_error).all()
+
+
+def test_about_the_middle_of_the_path_a_small_turn_moves_the_line_little():
+    # One degree of turn about a middle 100 away from the origin moves ρ about the origin by 1.7.
+    line = (1.0, 5.0)
+    truth = Truth(*(np.array([[value]]) for value in line), np.array([[[100.0, 0.0]]]), np.zeros(0, np.int32))
+    truth.middle[0, 0] = [
+        5.0 * math.cos(1.0) - 100.0 * math.sin(1.0),
+        5.0 * math.sin(1.0) + 100.0 * math.cos(1.0),
+    ]
+    turned = 1.0 + math.radians(1.0)
+    rho = truth.middle[0, 0] @ [math.cos(turned), math.sin(turned)]
+    chunk = track_chunk([[(turned, rho, 1.0, [])]])
+    assert not score(chunk, truth, np.zeros(2, np.int64), Criterion(rho=0.6, theta=0.05)).found.any()
+    found = score(chunk, truth, np.zeros(2, np.int64), Criterion(rho=0.6, theta=0.05, mid_track=True))
+    assert found.found.all()
+    assert found.rho_error[0, 0] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_each_trial_has_its_own_lines():
+    truth = truth_of([(1.0, 5.0)], trials=2)
+    truth.rho[1, 0] = 9.0
+    found = score(
+        track_chunk([[(1.0, 5.0, 1.0, [])], [(1.0, 5.0, 1.0, [])]]),
+        truth,
+        np.zeros(3, np.int64),
+        Criterion(rho=1.0),
+    )
+    assert found.found.ravel().tolist() == [True, False]

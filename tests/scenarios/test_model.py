@@ -6,8 +6,9 @@ import pytest
 from pydantic import ValidationError
 
 from algorithms.context import Context, Unit
+from algorithms.errors import RequestError
 from algorithms.initiators.registry import initiators
-from algorithms.parameters import numeric_paths
+from algorithms.parameters import numeric_paths, validated
 from algorithms.scoring import Criterion
 from scenarios.model import (
     LARGEST_SEED,
@@ -146,6 +147,54 @@ def test_an_entry_under_a_name_of_its_own():
     assert not hasattr(entry.parameters, "name")
 
 
+def test_clutter_without_a_kind_is_poisson_and_another_kind_says_so():
+    given = scenario(
+        targets=[{"position": [1, 2], "velocity": [3, 4]}],
+        clutter=[{"rate": 2}, {"kind": "exact", "count": 7}, {"kind": "exact", "count": 90, "per": "batch"}],
+    )
+    assert [source.kind for source in given.clutter] == ["poisson", "exact", "exact"]
+    n = given.scans
+    assert given.expected_clutter == 2 * n + 7 * n + 90
+    assert given.expected_plots == given.expected_clutter + n
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ({"count": 5}, r"there is no field 'count' \(known: kind, over, region, rate\)"),
+        ({"kind": "exakt", "count": 5}, "there is no kind 'exakt'; did you mean 'exact'"),
+        ({"kind": "exact", "count": 2.5}, "2.5 is given; it must be a whole number"),
+        ({"rate": 1, "over": "targets"}, "there is no target"),
+        (
+            {"rate": 1, "over": "targets", "region": {"x": [0, 1], "y": [0, 1]}},
+            "region is given with over: targets",
+        ),
+    ],
+)
+def test_wrong_clutter_is_refused_in_words(source, message):
+    with pytest.raises(RequestError, match=message):
+        validated(Scenario, {**SCENARIO, "clutter": [source]}, "scenario")
+
+
+@pytest.mark.parametrize(
+    ("criterion", "message"),
+    [
+        ({"plots": 3, "nearest": True}, "nearest is given with plots"),
+        ({"plots": 3, "at": "mid-track"}, "at: mid-track is given with plots"),
+        ({"rho": 1.0, "at": "mid-track"}, "give theta_deg too"),
+    ],
+)
+def test_a_criterion_that_says_too_much_is_refused(criterion, message):
+    with pytest.raises(RequestError, match=message):
+        validated(MatchCriterion, criterion, "criterion")
+
+
+def test_a_criterion_tells_only_what_was_chosen():
+    assert MatchCriterion(rho=3.0).document == {"rho": 3.0, "theta_deg": None}
+    chosen = MatchCriterion(rho=0.6, theta_deg=3.0, at="mid-track", nearest=True)
+    assert chosen.document == {"rho": 0.6, "theta_deg": 3.0, "at": "mid-track", "nearest": True}
+
+
 def test_the_numeric_fields_of_a_scenario_can_be_swept():
     given = scenario(
         sensor={"sigma": [1, 2]},
@@ -157,6 +206,7 @@ def test_the_numeric_fields_of_a_scenario_can_be_swept():
         "scans", "interval", "region.x.0", "region.x.1", "region.y.0", "region.y.1", "clutter.0.rate",
         "sensor.sigma", "sensor.sigma.0", "sensor.sigma.1", "sensor.detection_probability",
         "targets.0.position.0", "targets.0.position.1", "targets.0.velocity.0", "targets.0.velocity.1",
+        "targets.0.spread",
         "targets.0.birth", "targets.0.death",
     }  # fmt: skip
 

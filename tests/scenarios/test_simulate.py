@@ -13,12 +13,13 @@ from scenarios.model import (
     LARGEST_SEED,
     MOST_TRIALS,
     CartesianSensor,
+    ExactClutter,
     PoissonClutter,
     Region,
     Scenario,
     Target,
 )
-from scenarios.simulate import World, draw, poisson_distribution, true_lines, truth
+from scenarios.simulate import World, draw, poisson_distribution, true_lines, true_paths, truth
 
 steady = settings(
     deadline=None, derandomize=True, max_examples=50, suppress_health_check=[HealthCheck.too_slow]
@@ -376,12 +377,87 @@ def test_the_truth_of_a_draw():
     found = drawn(scenario, 22, 0, 3)
     known = truth(scenario, found)
     assert known.origin is found.origin
-    assert math.degrees(known.theta[0]) == pytest.approx(120.96, abs=0.005)
-    assert known.rho[0] == pytest.approx(-3.43, abs=0.005)
-    assert np.isnan(known.theta[1])
-    assert np.isnan(known.rho[1])
+    assert known.theta.shape == known.rho.shape == (3, 2)
+    assert np.degrees(known.theta[:, 0]) == pytest.approx(120.96, abs=0.005)
+    assert known.rho[:, 0] == pytest.approx(-3.43, abs=0.005)
+    assert np.isnan(known.theta[:, 1]).all()
+    assert np.isnan(known.rho[:, 1]).all()
+    assert known.middle[2] == pytest.approx(np.array([[41.8, 21.08], [1.0, 2.0]]))
 
 
 def test_there_are_no_lines_without_targets():
-    theta, rho = true_lines(scene(targets=[]))
+    theta, rho = true_lines(scene(targets=[]), np.zeros((0, 2)))
     assert theta.shape == rho.shape == (0,)
+
+
+SPREAD = Target(position=(40.0, 20.0), velocity=(0.3, 0.18), spread=(2.0, 0.5))
+
+
+def test_a_target_begins_anywhere_within_its_spread_and_its_truth_goes_with_it():
+    scenario = scene(4, sigma=0.0, rates=(), targets=[SPREAD])
+    found = drawn(scenario, 3, 0, 4000)
+    shift = found.shift[:, 0]
+    assert found.shift.shape == (4000, 1, 2)
+    assert (np.abs(shift) <= [2.0, 0.5]).all()
+    for axis, half in ((0, 2.0), (1, 0.5)):
+        assert stats.kstest(shift[:, axis], stats.uniform(-half, 2 * half).cdf).pvalue > 1e-4
+    assert abs(np.corrcoef(shift.T)[0, 1]) < 4.0 / math.sqrt(4000)
+    known = truth(scenario, found)
+    plots = found.chunk.position.reshape(4000, 4, 2)
+    along = plots[..., 0] * np.cos(known.theta) + plots[..., 1] * np.sin(known.theta)
+    np.testing.assert_allclose(along, np.broadcast_to(known.rho, along.shape), atol=1e-9)
+    np.testing.assert_allclose(known.middle[:, 0], plots.mean(axis=1))
+    np.testing.assert_allclose(true_paths(scenario, found.shift[7])[0], plots[7])
+
+
+def test_a_spread_changes_nothing_but_where_the_target_is():
+    still, moved = scene(6, targets=[SPREAD.model_copy(update={"spread": 0.0})]), scene(6, targets=[SPREAD])
+    one, other = drawn(still, 9, 5), drawn(moved, 9, 5)
+    np.testing.assert_array_equal(one.origin, other.origin)
+    own = one.origin >= 0
+    np.testing.assert_array_equal(one.chunk.position[~own], other.chunk.position[~own])
+    apart = other.chunk.position[own] - one.chunk.position[own]
+    np.testing.assert_allclose(apart, np.broadcast_to(other.shift[0, 0], apart.shape), atol=1e-12)
+
+
+def test_a_fixed_number_of_plots_a_scan_and_a_batch():
+    fixed = [ExactClutter(count=7, per="scan"), ExactClutter(count=90, per="batch", region=CORNER)]
+    scenario = scene(5, targets=[]).model_copy(update={"clutter": fixed})
+    found = drawn(scenario, 11, 0, 300)
+    assert (np.diff(found.chunk.offsets) == 5 * 7 + 90).all()
+    inside = found.chunk.position[:, 0] < 0.0
+    scans = found.chunk.scan
+    of_scan = np.array(
+        [np.bincount(scans[~inside].reshape(300, -1)[trial], minlength=5) for trial in range(300)]
+    )
+    assert (of_scan == 7).all()
+    # Each plot of the batch falls into any scan alike, and anywhere in its region.
+    batch = np.bincount(scans[inside], minlength=5)
+    assert stats.chisquare(batch).pvalue > 1e-4
+    for axis, (low, high) in enumerate(((-20.0, -10.0), (5.0, 6.0))):
+        place = found.chunk.position[inside, axis]
+        assert stats.kstest(place, stats.uniform(low, high - low).cdf).pvalue > 1e-4
+
+
+@steady
+@given(seeds, st.integers(0, MOST_TRIALS - 4), st.integers(1, 4))
+def test_trials_with_fixed_numbers_are_the_same_alone_as_in_a_chunk(seed, first, trials):
+    fixed = [ExactClutter(count=9, per="batch"), PoissonClutter(rate=2.0), ExactClutter(count=2)]
+    scenario = scene(4, targets=[SPREAD], probability=0.8).model_copy(update={"clutter": fixed})
+    chunk = drawn(scenario, seed, first, trials)
+    for index in range(trials):
+        alone = drawn(scenario, seed, first + index)
+        assert_same(part(chunk, index), part(alone, 0))
+        np.testing.assert_array_equal(chunk.shift[index], alone.shift[0])
+
+
+def test_clutter_around_the_targets_lies_in_the_box_of_their_paths():
+    scenario = scene(11).model_copy(
+        update={"clutter": [ExactClutter(count=500, per="batch", over="targets")]}
+    )
+    place = drawn(scenario, 2).without_targets().chunk.position
+    assert len(place) == 500
+    # (40, 20) to (52, 27.2) and (20, 80) to (32, 72.8)
+    assert place.min(axis=0) == pytest.approx([20.0, 20.0], abs=0.5)
+    assert place.max(axis=0) == pytest.approx([52.0, 80.0], abs=0.5)
+    assert ((place >= [20.0, 20.0]) & (place <= [52.0, 80.0])).all()

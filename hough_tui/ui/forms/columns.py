@@ -10,7 +10,6 @@ from pydantic import BaseModel
 from rich.text import Text
 
 from algorithms.context import Unit
-from algorithms.parameters import Path
 from hough_tui.ui.forms.edits import value_in
 from hough_tui.ui.forms.fields import FieldDescription, Kind, components, described, ordered, told_apart
 from hough_tui.ui.forms.labels import within
@@ -22,21 +21,23 @@ INHERITED = "dim italic"
 
 def columns_of(models: Sequence[type[BaseModel]], unit: Unit | None) -> tuple[FieldDescription, ...]:
     """Return the columns of elements of some models; their paths begin within the element."""
-    found: dict[Path, FieldDescription] = {}
+    found: list[FieldDescription] = []
     for model in models:
-        for column in _opened(ordered(told_apart(described(model, (), unit), tuple(models)))):
-            found.setdefault(column.path, column)
-    # What several kinds of elements have comes before what only some have.
-    return tuple(sorted(found.values(), key=lambda column: not _is_common(column, models)))
+        # What only some kinds of elements have stands before what follows it there, as in the declaration.
+        place = len(found)
+        own = told_apart(ordered(described(model, (), unit)), tuple(models))
+        for column in reversed(list(_opened(own))):
+            paths = [known.path for known in found]
+            if column.path in paths:
+                place = paths.index(column.path)
+            else:
+                found.insert(place, column)
+    return tuple(found)
 
 
 def has(element: BaseModel, column: FieldDescription) -> bool:
     """Return whether an element has the field of a column: not every kind has every field."""
-    return _is_common(column, [type(element)])
-
-
-def _is_common(column: FieldDescription, models: Sequence[type[BaseModel]]) -> bool:
-    return all(column.path[0] in model.model_fields for model in models)
+    return column.path[0] in type(element).model_fields
 
 
 def heading(label: str, unit: str, *, right: bool) -> Text:

@@ -16,6 +16,7 @@ from hough_tui.ui.screens.explanation import explained
 from scenarios.files import bundled_paths, load_set
 from scenarios.model import (
     CartesianSensor,
+    ExactClutter,
     Experiment,
     MatchCriterion,
     PoissonClutter,
@@ -144,10 +145,23 @@ def test_what_a_plug_in_may_declare():
 
 def test_columns_open_groups_and_named_vectors():
     columns = {column.title: column for column in columns_of([Target], Unit.KILOMETRE)}
-    assert list(columns) == ["Name", "x [km]", "y [km]", "vx [km/s]", "vy [km/s]", "Birth", "Death"]
+    assert list(columns) == [
+        "Name",
+        "x [km]",
+        "y [km]",
+        "vx [km/s]",
+        "vy [km/s]",
+        "Birth",
+        "Death",
+        "Spread [km]",
+    ]
     assert columns["vy [km/s]"].path == ("velocity", 1)
     clutter = columns_of([PoissonClutter], Unit.KILOMETRE)
-    assert [column.title for column in clutter] == ["Rate", "Region x [km]", "Region y [km]"]
+    assert [column.title for column in clutter] == ["Over", "Rate", "Region x [km]", "Region y [km]"]
+    # What the one kind alone has stands where it stands in its declaration.
+    clutter = columns_of([PoissonClutter, ExactClutter], Unit.KILOMETRE)
+    labels = ["Kind", "Over", "Rate", "Count", "Per", "Region x", "Region y"]
+    assert [column.label for column in clutter] == labels
     entries = columns_of([entry_model(known) for known in initiators().values()], Unit.KILOMETRE)
     assert [column.label for column in entries[:2]] == ["Name", "Initiator"]
 

@@ -10,8 +10,10 @@ from hough_tui.ui.screens.explanation import ExplanationScreen
 from tests.hough_tui.ui.test_forms_app import SCENARIO, FormApp, drive
 
 TARGETS, CLUTTER = (*SCENARIO, "targets"), (*SCENARIO, "clutter")
-X, Y, VX, VY, BIRTH, DEATH, SPEED = range(1, 8)
+X, Y, VX, VY, BIRTH, DEATH, SPREAD, SPEED = range(1, 9)
 """The columns of the table of targets, after the name."""
+KIND, OVER, RATE, COUNT, PER, REGION_X, REGION_Y = range(7)
+"""The columns of the table of clutter."""
 
 
 async def at(app: FormApp, pilot: Pilot[None], path: Path, row: int, column: int) -> ListTable:
@@ -45,7 +47,7 @@ def rows(table: ListTable) -> list[list[str]]:
 def test_targets_are_shown_with_speed_and_heading():
     async def journey(app, pilot):
         table = app.form.table(TARGETS)
-        assert rows(table)[0] == ["rising", "40", "20", "0.3", "0.18", "0", "", "0.350", "59.0"]
+        assert rows(table)[0] == ["rising", "40", "20", "0.3", "0.18", "0", "", "0", "0.350", "59.0"]
         assert rows(table)[1][-1] == "121.0"
 
     assert asked(drive(SCENARIO, journey, (100, 50))) == []
@@ -212,13 +214,31 @@ def test_the_mouse_edits_and_presses():
 
 def test_an_empty_region_of_clutter_shows_and_begins_as_that_of_the_scenario():
     async def journey(app, pilot):
-        table = await at(app, pilot, CLUTTER, 0, 1)
-        assert rows(table)[0] == ["50", "0, 100", "0, 100"]
+        table = await at(app, pilot, CLUTTER, 0, REGION_X)
+        assert rows(table)[0] == ["poisson", "region", "50", "", "", "0, 100", "0, 100"]
         await edit(pilot, "10 20", "enter")
         region = app.workspace.value((*CLUTTER, 0, "region"))
         assert (region.x, region.y) == ((10.0, 20.0), (0.0, 100.0))
         await edit(pilot, "", "enter")
         assert app.workspace.value((*CLUTTER, 0, "region")) is None
+
+    drive(SCENARIO, journey, (100, 50))
+
+
+def test_clutter_becomes_of_another_kind_in_its_cell():
+    async def journey(app, pilot):
+        table = await at(app, pilot, CLUTTER, 0, KIND)
+        await pilot.press("enter")
+        await pilot.pause()
+        assert app.workspace.value((*CLUTTER, 0, "kind")) == "exact"
+        table = await at(app, pilot, CLUTTER, 0, COUNT)
+        await edit(pilot, "90", "enter")
+        assert app.workspace.value((*CLUTTER, 0, "count")) == 90
+        assert rows(table)[0][:5] == ["exact", "region", "", "90", "scan"]
+        await at(app, pilot, CLUTTER, 0, RATE)
+        await pilot.press("enter")
+        await pilot.pause()
+        assert message(table) == "! this one has no rate"
 
     drive(SCENARIO, journey, (100, 50))
 
