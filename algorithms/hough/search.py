@@ -15,11 +15,10 @@ from algorithms.hough.peaks import (
     best_first,
     least_deviations,
     removed_votes,
-    removed_weighted_votes,
     successive_maxima,
 )
 from algorithms.hough.voting import GridArrays, vote, votes_outside
-from algorithms.hough.weighting import Weighting, WeightingArrays, weigh
+from algorithms.hough.weighting import Weighting, WeightingSpace, weigh
 from algorithms.plots import PlotChunk
 from algorithms.tracks import TrackChunk
 
@@ -61,92 +60,73 @@ class PeakSearch:
 
 
 @kernel
-def _extract(  # type: ignore[no-untyped-def]
-    values, extraction, threshold, maxima, rows, columns, last, wrap,
-    x, y, cosine, sine, rho_min, rho_step, cells, count,
-):  # fmt: skip
-    """Append the cells that an extraction chooses by their values alone; they are changed."""
-    if extraction == Extraction.THRESHOLD:
-        return at_threshold(values, threshold, cells, count)
-    if extraction == Extraction.SUCCESSIVE:
-        return successive_maxima(
-            values, threshold, maxima, rows, columns, last, wrap, rho_min, rho_step, cells, count
-        )
-    if extraction == Extraction.THESIS:
-        return least_deviations(
-            values, threshold, rows, columns, last, x, y, cosine, sine, rho_min, rho_step, cells, count
-        )
-    return best_first(
-        values, threshold, maxima, rows, columns, last, wrap,
-        x, y, cosine, sine, rho_min, rho_step, cells, count,
-    )  # fmt: skip
+def _fill(x, y, cosine, sine, rho_min, rho_step, votes, columns, space):  # type: ignore[no-untyped-def]
+    """Fill the votes of one trial, and with `space` the weighted ones."""
+    if space is None:
+        votes[:] = 0
+        vote(x, y, cosine, sine, rho_min, rho_step, votes, columns)
+    else:
+        weigh(x, y, cosine, sine, rho_min, rho_step, space)
 
 
 @kernel
 def _search(  # type: ignore[no-untyped-def]
-    x, y, offsets, cosine, sine, rho_min, rho_step, accumulator, columns_of_plots,
-    extraction, votes, maxima, rows, columns, last, wrap,
+    x, y, offsets, cosine, sine, rho_min, rho_step, votes, columns_of_plots, space, values,
+    extraction, threshold, maxima, rows, columns, last, wrap, cells,
 ):  # fmt: skip
+    """Return the cells that are chosen by their values alone."""
     trials = len(offsets) - 1
     found = np.zeros(trials + 1, np.int64)
     outside = np.zeros(trials, np.int64)
-    cells = np.empty((16 * trials + 64, 3), np.int64)
     count = 0
     for trial in range(trials):
-        own_x, own_y = x[offsets[trial] : offsets[trial + 1]], y[offsets[trial] : offsets[trial + 1]]
-        accumulator[:] = 0
-        vote(own_x, own_y, cosine, sine, rho_min, rho_step, accumulator, columns_of_plots)
-        outside[trial] = votes_outside(accumulator)
-        if extraction == Extraction.VOTE_REMOVAL:
-            cells, count = removed_votes(
-                accumulator, votes, maxima, rows, columns, last, wrap,
-                own_x, own_y, cosine, sine, rho_min, rho_step, cells, count,
-            )  # fmt: skip
+        first, end = offsets[trial], offsets[trial + 1]
+        _fill(x[first:end], y[first:end], cosine, sine, rho_min, rho_step, votes, columns_of_plots, space)
+        outside[trial] = votes_outside(votes)
+        if extraction == Extraction.THRESHOLD:
+            cells, count = at_threshold(values, threshold, cells, count)
         else:
-            cells, count = _extract(
-                accumulator, extraction, votes, maxima, rows, columns, last, wrap,
-                own_x, own_y, cosine, sine, rho_min, rho_step, cells, count,
-            )  # fmt: skip
+            cells, count = successive_maxima(
+                values, threshold, maxima, rows, columns, last, wrap, rho_min, rho_step, cells, count
+            )
         found[trial + 1] = count
     return cells[:count], found, outside
 
 
 @kernel
-def _search_weighted(  # type: ignore[no-untyped-def]
-    x, y, offsets, cosine, sine, rho_min, rho_step, several, eta, least_votes,
-    votes, weighted, deviation, by_theta, by_rho, inverse, places,
-    extraction, threshold, maxima, rows, columns, last, wrap,
+def _search_by_plots(  # type: ignore[no-untyped-def]
+    x, y, offsets, cosine, sine, rho_min, rho_step, votes, columns_of_plots, space, values,
+    extraction, threshold, maxima, rows, columns, last, wrap, cells,
 ):  # fmt: skip
+    """Return the cells that are chosen by their values and by the plots that voted for them."""
     trials = len(offsets) - 1
     found = np.zeros(trials + 1, np.int64)
     outside = np.zeros(trials, np.int64)
-    cells = np.empty((16 * trials + 64, 3), np.float64)
     count = 0
     for trial in range(trials):
         own_x, own_y = x[offsets[trial] : offsets[trial + 1]], y[offsets[trial] : offsets[trial + 1]]
-        weigh(
-            own_x, own_y, cosine, sine, rho_min, rho_step, several, eta, least_votes,
-            votes, weighted, deviation, by_theta, by_rho, inverse, places,
-        )  # fmt: skip
+        _fill(own_x, own_y, cosine, sine, rho_min, rho_step, votes, columns_of_plots, space)
         outside[trial] = votes_outside(votes)
-        if extraction == Extraction.VOTE_REMOVAL:
-            cells, count = removed_weighted_votes(
-                votes, weighted, deviation, several, eta, least_votes, by_theta, by_rho, inverse, places,
-                threshold, maxima, rows, columns, last, wrap,
+        if extraction == Extraction.THESIS:
+            cells, count = least_deviations(
+                values, threshold, rows, columns, last,
+                own_x, own_y, cosine, sine, rho_min, rho_step, cells, count,
+            )  # fmt: skip
+        elif extraction == Extraction.BEST_FIRST:
+            cells, count = best_first(
+                values, threshold, maxima, rows, columns, last, wrap,
                 own_x, own_y, cosine, sine, rho_min, rho_step, cells, count,
             )  # fmt: skip
         else:
-            cells, count = _extract(
-                weighted, extraction, threshold, maxima, rows, columns, last, wrap,
+            cells, count = removed_votes(
+                values, votes, space, threshold, maxima, rows, columns, last, wrap,
                 own_x, own_y, cosine, sine, rho_min, rho_step, cells, count,
             )  # fmt: skip
         found[trial + 1] = count
     return cells[:count], found, outside
 
 
-def search(
-    chunk: PlotChunk, grid: Grid, peaks: PeakSearch, weighting: Weighting | None = None
-) -> TrackChunk:
+def search(chunk: PlotChunk, grid: Grid, peaks: PeakSearch, weighting: Weighting | None = None) -> TrackChunk:
     """Return the tracks at the peaks of each trial's accumulator.
 
     Parameters
@@ -158,26 +138,20 @@ def search(
     """
     arrays = GridArrays.of(grid)
     x, y = (np.ascontiguousarray(chunk.position[:, axis] - grid.origin[axis]) for axis in (0, 1))
-    plots = x, y, chunk.offsets, arrays.cosine, arrays.sine, grid.rho_min, grid.rho_step
+    votes = arrays.accumulator()
+    space = None if weighting is None else WeightingSpace.of(weighting, votes, chunk.largest)
+    by_value = peaks.extraction in (Extraction.THRESHOLD, Extraction.SUCCESSIVE)
     maxima = EVERY if peaks.maxima is None else peaks.maxima
-    choice = (
-        maxima, min(peaks.suppress_theta, grid.theta_bins), min(peaks.suppress_rho, grid.rho_bins),
+    cells, offsets, outside = (_search if by_value else _search_by_plots)(
+        x, y, chunk.offsets, arrays.cosine, arrays.sine, grid.rho_min, grid.rho_step,
+        votes, np.empty(chunk.largest, np.int32), space, votes if space is None else space.weighted,
+        int(peaks.extraction), np.uint32(peaks.votes) if space is None else float(peaks.votes), maxima,
+        min(peaks.suppress_theta, grid.theta_bins), min(peaks.suppress_rho, grid.rho_bins),
         peaks.last, peaks.wrap,
+        np.empty((16 * chunk.trials + 64, 3), np.int64 if space is None else np.float64),
     )  # fmt: skip
-    extraction = int(peaks.extraction)
-    if weighting is None:
-        cells, offsets, outside = _search(
-            *plots, arrays.accumulator(), np.empty(chunk.largest, np.int32),
-            extraction, np.uint32(peaks.votes), *choice,
-        )  # fmt: skip
-    else:
-        space = WeightingArrays.of(arrays, chunk.largest)
-        cells, offsets, outside = _search_weighted(
-            *plots, weighting.several, weighting.eta, weighting.least_votes,
-            space.votes, space.weighted, space.deviation, space.by_theta, space.by_rho,
-            space.inverse, space.places, extraction, float(peaks.votes), *choice,
-        )  # fmt: skip
-    if len(cells) > maxima:
+    # The others stop by themselves.
+    if len(cells) > maxima and peaks.extraction in (Extraction.THRESHOLD, Extraction.THESIS):
         cells, offsets = _greatest(cells, offsets, maxima, peaks.last)
     theta, rho = grid.lines(cells[:, 0].astype(np.int64), cells[:, 1].astype(np.int64))
     return TrackChunk(offsets, theta, rho, cells[:, 2].astype(np.float64), outside)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,50 +72,22 @@ def line_weight(least, deviation):  # type: ignore[no-untyped-def]
     return math.exp(math.log(alpha) / alpha) if alpha > 0.0 else 0.0
 
 
-@kernel
-def weigh(  # type: ignore[no-untyped-def]
-    x, y, cosine, sine, rho_min, rho_step, several, eta, least_votes,
-    votes, weighted, deviation, by_theta, by_rho, inverse, places,
-):  # fmt: skip
-    """Fill an accumulator with the votes of plots, their deviations and their weighted votes.
+class WeightingSpace(NamedTuple):
+    """How votes are weighted, and the arrays in which that is done.
 
-    Parameters
+    Attributes
     ----------
-    x, y : float64 (n,), measured from the grid's origin
-    cosine, sine : float64 (rows,)
     several, eta, least_votes : see `Weighting`
-    votes : uint32 (rows, ρ columns + 2), is filled
-    weighted : float64 of the same shape, is filled; 0 in the sentinel columns
-    deviation : float64 of the same shape, is filled: see `deviations`
-    by_theta, by_rho, inverse, places : working space: see `deviations`, `vote_with_moments`
+    votes : uint32 (rows, ρ columns + 2)
+    weighted : float64 of the same shape, the weighted votes; 0 in the sentinel columns
+    deviation : float64 of the same shape: see `deviations`
+    by_theta, by_rho : see `deviations`
+    inverse, places : see `vote_with_moments`
     """
-    votes[:] = 0
-    # The means are needed until the deviations are known, the weighted votes from then on.
-    mean, squares = weighted, deviation
-    mean[:] = 0.0
-    squares[:] = 0.0
-    vote_with_moments(x, y, cosine, sine, rho_min, rho_step, votes, mean, squares, inverse, places)
-    deviations(votes, squares, least_votes, by_theta, by_rho)
-    least = by_theta.min()
-    weighted[:] = 0.0
-    for row in range(len(cosine)):
-        if by_theta[row] == np.inf:
-            continue
-        for column in range(FIRST, votes.shape[1] - 1):
-            scatter = deviation[row, column]
-            if scatter == np.inf:
-                continue
-            if several:
-                weight = 0.5 * (line_weight(by_theta[row], scatter) + line_weight(by_rho[column], scatter))
-            else:
-                weight = (least / scatter) ** (2.0 * eta)
-            weighted[row, column] = votes[row, column] * weight
 
-
-@dataclass(frozen=True, slots=True)
-class WeightingArrays:
-    """The working space of `weigh`, by the names of its parameters."""
-
+    several: bool
+    eta: float
+    least_votes: int
     votes: NDArray[np.uint32]
     weighted: NDArray[np.float64]
     deviation: NDArray[np.float64]
@@ -124,14 +97,50 @@ class WeightingArrays:
     places: NDArray[np.float64]
 
     @classmethod
-    def of(cls, arrays: GridArrays, plots: int) -> WeightingArrays:
-        """Return working space for a grid and at most so many plots."""
-        votes = arrays.accumulator()
+    def of(cls, weighting: Weighting, votes: NDArray[np.uint32], plots: int) -> WeightingSpace:
+        """Return working space beside an accumulator, for at most so many plots."""
         rows, columns = votes.shape
         return cls(
+            weighting.several, float(weighting.eta), weighting.least_votes,
             votes, np.zeros(votes.shape), np.zeros(votes.shape), np.empty(rows), np.empty(columns),
             reciprocals(plots), np.empty(plots),
         )  # fmt: skip
+
+
+@kernel
+def weigh(x, y, cosine, sine, rho_min, rho_step, space):  # type: ignore[no-untyped-def]
+    """Fill votes, deviations and weighted votes of a `WeightingSpace` with those of plots.
+
+    Parameters
+    ----------
+    x, y : float64 (n,), measured from the grid's origin
+    cosine, sine : float64 (rows,)
+    """
+    votes, weighted, deviation = space.votes, space.weighted, space.deviation
+    by_theta, by_rho = space.by_theta, space.by_rho
+    # The means are needed until the deviations are known, the weighted votes from then on.
+    mean, squares = weighted, deviation
+    votes[:] = 0
+    mean[:] = 0.0
+    squares[:] = 0.0
+    vote_with_moments(
+        x, y, cosine, sine, rho_min, rho_step, votes, mean, squares, space.inverse, space.places
+    )
+    deviations(votes, squares, space.least_votes, by_theta, by_rho)
+    least = by_theta.min()
+    weighted[:] = 0.0
+    for row in range(len(cosine)):
+        if by_theta[row] == np.inf:
+            continue
+        for column in range(FIRST, votes.shape[1] - 1):
+            scatter = deviation[row, column]
+            if scatter == np.inf:
+                continue
+            if space.several:
+                weight = 0.5 * (line_weight(by_theta[row], scatter) + line_weight(by_rho[column], scatter))
+            else:
+                weight = (least / scatter) ** (2.0 * space.eta)
+            weighted[row, column] = votes[row, column] * weight
 
 
 def accumulate_weighted(position: NDArray[np.float64], grid: Grid, weighting: Weighting) -> Accumulator:
@@ -160,13 +169,8 @@ def accumulate_weighted(position: NDArray[np.float64], grid: Grid, weighting: We
     """
     arrays = GridArrays.of(grid)
     x, y = (np.ascontiguousarray(position[:, axis] - grid.origin[axis]) for axis in (0, 1))
-    space = WeightingArrays.of(arrays, len(x))
-    weigh(
-        x, y, arrays.cosine, arrays.sine, grid.rho_min, grid.rho_step,
-        weighting.several, weighting.eta, weighting.least_votes,
-        space.votes, space.weighted, space.deviation, space.by_theta, space.by_rho,
-        space.inverse, space.places,
-    )  # fmt: skip
+    space = WeightingSpace.of(weighting, arrays.accumulator(), len(x))
+    weigh(x, y, arrays.cosine, arrays.sine, grid.rho_min, grid.rho_step, space)
     inside = np.s_[:, FIRST:-1]
     deviation = space.deviation[inside]
     return Accumulator(

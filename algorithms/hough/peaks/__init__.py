@@ -10,7 +10,7 @@ from algorithms.hough.peaks.cells import maximum
 from algorithms.hough.peaks.sequential import clear_window, successive_maxima
 from algorithms.hough.peaks.thesis import least_deviations
 from algorithms.hough.peaks.threshold import at_threshold
-from algorithms.hough.peaks.vote_removal import removed_votes, removed_weighted_votes
+from algorithms.hough.peaks.vote_removal import removed_votes
 
 __all__ = [
     "at_threshold",
@@ -19,6 +19,5 @@ __all__ = [
     "least_deviations",
     "maximum",
     "removed_votes",
-    "removed_weighted_votes",
     "successive_maxima",
 ]

@@ -76,10 +76,6 @@ def best_first(  # type: ignore[no-untyped-def]
             continue
         cells, count = written(cells, count, row, column, values[row, column])
         values[row, column] = 0
-        centre_x, centre_y = centroid(
-            x, y, cosine[row], sine[row], rho_min, rho_step, width, column
-        )
-        _clear_along(
-            values, row, rows, columns, wrap, centre_x, centre_y, cosine, sine, rho_min, rho_step
-        )
+        centre_x, centre_y = centroid(x, y, cosine[row], sine[row], rho_min, rho_step, width, column)
+        _clear_along(values, row, rows, columns, wrap, centre_x, centre_y, cosine, sine, rho_min, rho_step)
     return cells, count

@@ -11,7 +11,7 @@ from algorithms.hough.voting import FIRST
 @kernel
 def row_maximum(accumulator, row):  # type: ignore[no-untyped-def]
     """Return the greatest count of a row, sentinels left out."""
-    greatest = np.uint32(0)
+    greatest = accumulator.dtype.type(0)
     counts = accumulator[row]
     for column in range(1, accumulator.shape[1] - 1):
         greatest = max(greatest, counts[column])
@@ -35,7 +35,7 @@ def maximum(accumulator, last):  # type: ignore[no-untyped-def]
     Among equals the first in θ-major order is taken, or with `last` the last.
     """
     best_row = 0
-    best = np.uint32(0)
+    best = accumulator.dtype.type(0)
     for row in range(accumulator.shape[0]):
         greatest = row_maximum(accumulator, row)
         if greatest > best or (last and greatest == best):

@@ -64,9 +64,7 @@ def least_deviations(  # type: ignore[no-untyped-def]
                 continue
             is_left[other - first] = False
             if least < 0.0:
-                least = _squares(
-                    x, y, cosine[row], sine[row], rho_min, rho_step, width, column + 1
-                )
+                least = _squares(x, y, cosine[row], sine[row], rho_min, rho_step, width, column + 1)
             found = _squares(
                 x, y, cosine[other_row], sine[other_row], rho_min, rho_step, width, other_column + 1
             )

@@ -9,11 +9,11 @@ from algorithms.hough.peaks.cells import with_room
 
 
 @kernel
-def _row_hits(accumulator, row, votes):  # type: ignore[no-untyped-def]
+def _row_hits(accumulator, row, least):  # type: ignore[no-untyped-def]
     hits = np.int32(0)
     counts = accumulator[row]
     for column in range(1, accumulator.shape[1] - 1):
-        hits += np.int32(counts[column] >= votes)
+        hits += np.int32(counts[column] >= least)
     return hits
 
 

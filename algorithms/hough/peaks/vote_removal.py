@@ -39,28 +39,33 @@ def _take_plots(  # type: ignore[no-untyped-def]
 
 @kernel
 def removed_votes(  # type: ignore[no-untyped-def]
-    votes, threshold, maxima, rows, columns, last, wrap, x, y, cosine, sine, rho_min, rho_step, cells, count
-):
+    values, votes, space, threshold, maxima, rows, columns, last, wrap,
+    x, y, cosine, sine, rho_min, rho_step, cells, count,
+):  # fmt: skip
     """Append the greatest cell and take back every vote of its plots, until none reaches the threshold.
 
     The plots of a cell are those that voted within ±columns of it in its row (with ±rows, also
-    within the window of `best_first` in the rows beside it).
+    within the window of `best_first` in the rows beside it). Weighted votes are no sums over
+    plots: without the plots of a peak the deviations of the cells that they crossed shrink, and
+    the least of a θ or a ρ may be another one; so the plots that are left are weighed anew.
 
     Parameters
     ----------
+    values : what is greatest and reaches the threshold: `votes`, or those of `space` weighted
     votes : uint32 (rows, ρ columns + 2), changed to the votes of the plots that are left
-    threshold : least votes of a cell, at least 1
+    space : the filled `WeightingSpace` of these votes, changed alike; None to go by the votes
+    threshold : least value of a cell, positive
     maxima : how many are taken at most
     last : whether of equal cells the last in θ-major order is taken
     x, y : float64 (n,), measured from the grid's origin
     cosine, sine : float64 (rows,)
-    cells, count : int64 (≥ count, 3), the cells written so far and their number
+    cells, count : int64 or float64 (≥ count, 3), the cells written so far and their number
     """
     height, width = votes.shape
     x, y = x.copy(), y.copy()
     left = len(x)
     for _ in range(maxima):
-        row, column, best = maximum(votes, last)
+        row, column, best = maximum(values, last)
         if best < threshold or best == 0:
             break
         cells, count = written(cells, count, row, column, best)
@@ -68,43 +73,13 @@ def removed_votes(  # type: ignore[no-untyped-def]
         left = _take_plots(
             row, column, rows, columns, wrap, x, y, left, cosine, sine, rho_min, rho_step, width, height
         )
-        for target in range(height):
-            for plot in range(left, before):
-                voted = column_of(x[plot], y[plot], cosine[target], sine[target], rho_min, rho_step, width)
-                votes[target, voted] -= np.uint32(1)
-    return cells, count
-
-
-@kernel
-def removed_weighted_votes(  # type: ignore[no-untyped-def]
-    votes, weighted, deviation, several, eta, least_votes, by_theta, by_rho, inverse, places,
-    threshold, maxima, rows, columns, last, wrap, x, y, cosine, sine, rho_min, rho_step, cells, count,
-):  # fmt: skip
-    """Append the cell of the greatest weighted votes, and weigh the votes of the other plots anew.
-
-    Weights are no sums over plots: without the plots of a peak the deviations of the cells that
-    they crossed shrink, and the least of a row or a column may be another one.
-
-    Parameters
-    ----------
-    votes, weighted, deviation, several, eta, least_votes, by_theta, by_rho, inverse, places : see
-        `weigh`; the first three are changed
-    threshold, maxima, rows, columns, last, wrap, x, y, cosine, sine, cells, count : see
-        `removed_votes`; here the cells are float64
-    """
-    height, width = votes.shape
-    x, y = x.copy(), y.copy()
-    left = len(x)
-    for _ in range(maxima):
-        row, column, best = maximum(weighted, last)
-        if best < threshold or best == 0:
-            break
-        cells, count = written(cells, count, row, column, best)
-        left = _take_plots(
-            row, column, rows, columns, wrap, x, y, left, cosine, sine, rho_min, rho_step, width, height
-        )
-        weigh(
-            x[:left], y[:left], cosine, sine, rho_min, rho_step, several, eta, least_votes,
-            votes, weighted, deviation, by_theta, by_rho, inverse, places,
-        )  # fmt: skip
+        if space is None:
+            for target in range(height):
+                for plot in range(left, before):
+                    voted = column_of(
+                        x[plot], y[plot], cosine[target], sine[target], rho_min, rho_step, width
+                    )
+                    votes[target, voted] -= np.uint32(1)
+        else:
+            weigh(x[:left], y[:left], cosine, sine, rho_min, rho_step, space)
     return cells, count
