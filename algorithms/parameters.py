@@ -83,6 +83,13 @@ def parameter(
     return Field(default, **options)
 
 
+def with_default(model: type[BaseModel], name: str, default: Any) -> Any:
+    """Declare a parameter of another model once more, with a default of its own."""
+    declared = model.model_fields[name]
+    told: Any = declared.json_schema_extra
+    return Field(default, description=declared.description, json_schema_extra=told)
+
+
 class Declared(BaseModel):
     """A model whose fields are declared parameters: frozen, and closed to unknown names."""
 

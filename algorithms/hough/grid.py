@@ -117,8 +117,13 @@ class GridParameters(Declared):
         help="centre of the first row, in rows: 0.5 is half a row from 0",
     )
 
-    def grid(self, context: Context) -> Grid:
+    def grid(self, context: Context, bytes_per_cell: int = BYTES_PER_CELL) -> Grid:
         """Return the grid, every `auto` worked out from the context.
+
+        Parameters
+        ----------
+        context : what is known of the sensor
+        bytes_per_cell : what an initiator keeps of each cell
 
         Raises
         ------
@@ -151,7 +156,7 @@ class GridParameters(Declared):
             # Past this the accumulator is refused anyway, and the quotient may not even be a whole number.
             wanted = min(self._span(context, origin, rho_min) / step, 1e15)
             bins = max(1, math.ceil(wanted - 1e-9))
-        size = self.theta_bins * bins * BYTES_PER_CELL
+        size = self.theta_bins * bins * bytes_per_cell
         if size > ACCUMULATOR_LIMIT:
             raise RequestError(
                 f"grid: an accumulator of {self.theta_bins:,} × {bins:,} cells would need "

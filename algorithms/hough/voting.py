@@ -95,11 +95,16 @@ class Accumulator:
     grid : the quantisation
     votes : uint32 (theta bins, rho bins)
     votes_outside : votes that fell outside the grid
+    std : float64 (theta bins, rho bins), the sample standard deviation of the ρ that voted for each
+        cell, NaN where it is not defined; None for an initiator that does not work it out
+    weighted : float64 (theta bins, rho bins), the weighted votes; None for one without
     """
 
     grid: Grid
     votes: NDArray[np.uint32]
     votes_outside: int
+    std: NDArray[np.float64] | None = None
+    weighted: NDArray[np.float64] | None = None
 
     @property
     def total(self) -> int:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 from algorithms.association import associate
 from algorithms.context import Context
 from algorithms.hough.grid import GridParameters
-from algorithms.hough.search import PeakSearch, search
+from algorithms.hough.search import Extraction, PeakSearch, search
 from algorithms.hough.voting import Accumulator, accumulate
+from algorithms.hough.weighting import Weighting, accumulate_weighted
+from algorithms.hough.windows import suppression
 from algorithms.initiators.base import ChunkInitiator
-from algorithms.parameters import Count, Dimension, Fraction, Parameters, parameter
+from algorithms.parameters import Auto, Count, Dimension, Fraction, Parameters, Whole, parameter
 from algorithms.plots import PlotChunk, Plots
 from algorithms.tracks import TrackChunk
 
@@ -22,6 +23,16 @@ GATE = 4.0
 STRIP = 1.5
 """Half the width of the strip in which a line's plots are sought, in ρ columns: the cell and
 its two neighbours, since a line between two rows spreads beyond one cell."""
+
+Peaks = Literal["threshold", "thesis", "best-first", "vote-removal", "sequential"]
+
+EXTRACTIONS = {
+    "threshold": Extraction.THRESHOLD,
+    "thesis": Extraction.THESIS,
+    "best-first": Extraction.BEST_FIRST,
+    "vote-removal": Extraction.VOTE_REMOVAL,
+    "sequential": Extraction.SUCCESSIVE,
+}
 
 
 class AccumulatingParameters(Parameters):
@@ -38,28 +49,75 @@ class AccumulatingParameters(Parameters):
         dimension=Dimension.FRACTION,
         help="the least votes of a track as a fraction of the expected n·Pd votes of a target",
     )
+    peaks: Peaks = parameter(
+        "threshold",
+        help="which cells with enough votes are tracks: every one; one a group of neighbours (thesis); from "
+        "the greatest down, each suppressing its own peak (best-first) or its plots' votes (vote-removal); "
+        "the greatest, again and again, a window around each cleared (sequential)",
+    )
+    maxima: Count | None = parameter(
+        None, dimension=Dimension.COUNT, help="how many maxima S are taken at most, the greatest"
+    )
+    suppress_theta: Whole | Auto = parameter(
+        "auto",
+        dimension=Dimension.COUNT,
+        help="rows on each side of a maximum that belong to it; threshold has no window",
+        auto="4 for thesis, 5 for sequential, 0 for vote-removal, twice the width of a peak for best-first",
+    )
+    suppress_rho: Whole | Auto = parameter(
+        "auto",
+        dimension=Dimension.COUNT,
+        help="columns on each side of a maximum that belong to it; threshold has no window",
+        auto="2 for thesis, 5 for sequential, 1 for vote-removal, half the height of a peak and 1 for "
+        "best-first",
+    )
+    ties: Literal["last", "first"] = parameter(
+        "last", help="which of equal maxima is taken, in θ-major order; the source takes the last"
+    )
 
     def resolved(self, context: Context) -> Self:
-        """Return these parameters with the quantisation and the least votes worked out.
+        """Return these parameters with quantisation, least votes and windows worked out.
 
-        The threshold is ⌈fraction·n·Pd⌉, at least 1; the ceiling forgives rounding errors.
+        The threshold is ⌈fraction·n·Pd⌉, at least 1; the ceiling forgives rounding errors. For
+        the windows see `algorithms.hough.windows`.
         """
         votes = self.votes
         if votes is None:
             votes = max(1, math.ceil(self.fraction * context.expected_votes - 1e-9))
-        return self.model_copy(update={"grid": self.grid.resolved(context), "votes": votes})
+        grid = self.grid.resolved(context)
+        rows, columns = suppression(EXTRACTIONS[self.peaks], grid.grid(context), context, votes)
+        return self.model_copy(
+            update={
+                "grid": grid,
+                "votes": votes,
+                "suppress_theta": rows if self.suppress_theta == "auto" else self.suppress_theta,
+                "suppress_rho": columns if self.suppress_rho == "auto" else self.suppress_rho,
+            }
+        )
 
 
 class AccumulatingInitiator(ChunkInitiator):
-    """An initiator that takes peaks of an accumulator: it says only which cells are tracks."""
+    """An initiator that takes peaks of an accumulator: it says what of its declared choices differs."""
 
-    @abstractmethod
     def peaks(self, parameters: Any) -> PeakSearch:
         """Return what makes a cell a track."""
+        return PeakSearch(
+            EXTRACTIONS[parameters.peaks],
+            parameters.votes,
+            parameters.maxima,
+            parameters.suppress_theta,
+            parameters.suppress_rho,
+            last=parameters.ties == "last",
+        )
+
+    def weighting(self, parameters: Any) -> Weighting | None:
+        """Return how votes are weighted; None where they count as they are."""
+        return None
 
     def initiate_chunk(self, chunk: PlotChunk, context: Context, parameters: Any) -> TrackChunk:
         """Return the tracks of each trial: the lines at the centres of the chosen cells."""
-        return search(chunk, parameters.grid.grid(context), self.peaks(parameters))
+        grid = parameters.grid.grid(context)
+        return search(chunk, grid, self.peaks(parameters), self.weighting(parameters))
 
     def associate_chunk(
         self, chunk: PlotChunk, tracks: TrackChunk, context: Context, parameters: Any
@@ -70,5 +128,8 @@ class AccumulatingInitiator(ChunkInitiator):
         return associate(chunk, tracks, STRIP * step, gate)
 
     def accumulator(self, plots: Plots, context: Context, parameters: Any) -> Accumulator:
-        """Return the votes of one batch."""
-        return accumulate(plots.position, parameters.grid.grid(context))
+        """Return the votes of one batch, with standard deviations and weighted votes where it has them."""
+        grid, weighting = parameters.grid.grid(context), self.weighting(parameters)
+        if weighting is None:
+            return accumulate(plots.position, grid)
+        return accumulate_weighted(plots.position, grid, weighting)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
-from algorithms.hough.search import Extraction, PeakSearch
-from algorithms.initiators.accumulating import AccumulatingInitiator, AccumulatingParameters
-from algorithms.parameters import Count, Dimension, Fraction, Whole, parameter
+from algorithms.hough.search import PeakSearch
+from algorithms.initiators.accumulating import AccumulatingInitiator, AccumulatingParameters, Peaks
+from algorithms.parameters import Count, Dimension, Fraction, parameter, with_default
 
 
 class SequentialParameters(AccumulatingParameters):
@@ -17,16 +18,8 @@ class SequentialParameters(AccumulatingParameters):
         dimension=Dimension.FRACTION,
         help="the least votes of a track as a fraction of the expected n·Pd votes of a target; 0 takes any",
     )
-    maxima: Count = parameter(2, dimension=Dimension.COUNT, help="how many maxima S are taken at most")
-    suppress_theta: Whole = parameter(
-        5, dimension=Dimension.COUNT, help="rows on each side of a maximum whose votes are cleared"
-    )
-    suppress_rho: Whole = parameter(
-        5, dimension=Dimension.COUNT, help="columns on each side of a maximum whose votes are cleared"
-    )
-    ties: Literal["last", "first"] = parameter(
-        "last", help="which of equal maxima is taken, in θ-major order; the source takes the last"
-    )
+    peaks: Peaks = with_default(AccumulatingParameters, "peaks", "sequential")
+    maxima: Count | None = with_default(AccumulatingParameters, "maxima", 2)
     mode: Literal["sound", "document"] = parameter(
         "sound",
         help="sound clears across θ = 0 and 180° too; document stops at the edges, as the source does",
@@ -50,16 +43,7 @@ class Sequential(AccumulatingInitiator):
 
     def peaks(self, parameters: SequentialParameters) -> PeakSearch:
         """Return the search for successive maxima."""
-        assert parameters.votes is not None
-        return PeakSearch(
-            Extraction.SUCCESSIVE,
-            parameters.votes,
-            parameters.maxima,
-            parameters.suppress_theta,
-            parameters.suppress_rho,
-            last=parameters.ties == "last",
-            wrap=parameters.mode == "sound",
-        )
+        return replace(super().peaks(parameters), wrap=parameters.mode == "sound")
 
 
 INITIATOR = Sequential()
