@@ -29,6 +29,7 @@ ROWS = tuple(2.0 ** (step / 4.0) for step in range(-2, 9))
 """The θ bins of the search: as many times those that the rule of Δθ asks for at κ = 1."""
 
 FEWEST_ROWS = 8
+MOST_VOTES = 4000
 
 BOUNDS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 """The bounds of the trade-off curve, as many times the bound of the question."""
@@ -110,11 +111,22 @@ class Survey:
 
         The greatest P_D within the bound; of all that come as close to it as `INDIFFERENT`, with
         whatever threshold, the one with the fewest false cells.
+
+        Raises
+        ------
+        RequestError
+            Where no threshold that was looked at keeps the bound.
         """
         best = np.where(self.is_allowed, self.best(bound).p_detection, -1.0)
+        if best.max() <= 0.0:
+            raise RequestError(
+                f"no threshold up to {self.p_detection.shape[-1]:,} votes keeps the expected number of false "
+                f"cells within {bound:g}; allow more of them, or expect less clutter"
+            )
         good = (self.p_detection >= (1.0 - INDIFFERENT) * best.max()) & (self.false_cells <= bound)
         cells = np.where(good & self.is_allowed[..., None], self.false_cells, np.inf)
-        row, width, before = np.unravel_index(int(np.argmin(cells)), cells.shape)
+        # Without clutter all are equal, and the highest threshold is the one to take.
+        row, width, before = max(np.argwhere(cells == cells.min()), key=lambda found: int(found[2]))
         return int(row), int(width), int(before) + 1
 
 
@@ -162,11 +174,11 @@ def default_search(question: Question) -> SearchGrid:
             "deviation"
         )
     # The rule at κ = 1, even where the question allows another κ: its demand is applied to this list.
-    needed = math.pi / min(widest_row(line.sigma, line.extent) for line in question.lines)
-    demanded = math.pi / min(widest_row(line.sigma, line.extent, question.kappa) for line in question.lines)
+    needed, demanded = math.pi / _widest(question, 1.0), math.pi / _widest(question, question.kappa)
     rows = {max(FEWEST_ROWS, math.ceil(factor * base)) for factor in ROWS for base in (needed, demanded)}
     sigma = min(line.sigma for line in question.lines if line.sigma > 0.0)
-    widths = np.array(WIDTHS) * sigma
+    # Short numbers, since people will read and write them.
+    widths = np.array([float(f"{width * sigma:.6g}") for width in WIDTHS])
     kept = sorted(count for count in rows if count <= MOST_ROWS)
     return SearchGrid(np.array(kept or [MOST_ROWS], dtype=np.int64), widths)
 
@@ -177,7 +189,9 @@ def survey(question: Question, search: SearchGrid) -> Survey:
     densities = [clutter.density_on(line) for line in question.lines]
     crowd = max(densities) * float(search.rho_step[-1])
     scans = max(line.scans for line in question.lines)
-    most = scans + math.ceil(crowd + 8.0 * math.sqrt(crowd)) + 8
+    # Past n + n²/9 clutter scatters by so much that n votes of a target are lost in it.
+    likely = scans + math.ceil(min(crowd + 8.0 * math.sqrt(crowd), 200.0 + scans**2 / 9.0)) + 8
+    most = min(likely, MOST_VOTES)
     p_detection = np.zeros((len(search.theta_bins), len(search.rho_step), most))
     for line, density in zip(question.lines, densities, strict=True):
         own = home_votes(
@@ -193,7 +207,7 @@ def survey(question: Question, search: SearchGrid) -> Survey:
 
 
 def _allowed(question: Question, search: SearchGrid) -> NDArray[np.bool_]:
-    widest = min(widest_row(line.sigma, line.extent, question.kappa) for line in question.lines)
+    widest = _widest(question, question.kappa)
     fine = search.theta_step <= widest * (1.0 + 1e-9)
     reach = 2.0 * question.region.farthest((question.region.centre[0], question.region.centre[1]))
     size = search.theta_bins[:, None] * np.ceil(reach / search.rho_step) * BYTES_PER_CELL
@@ -217,6 +231,11 @@ def _allowed(question: Question, search: SearchGrid) -> NDArray[np.bool_]:
             )
         allowed &= apart
     return allowed
+
+
+def _widest(question: Question, kappa: float) -> float:
+    # A line along the only axis with noise has none across; no row is fine enough for it.
+    return min(widest_row(line.sigma, line.extent, kappa) for line in question.lines if line.sigma > 0.0)
 
 
 def _gap(question: Question, theta_step: float) -> float:

@@ -57,21 +57,32 @@ def false_cells_by_row(
     # Beyond the sources there is nothing, and infinite bounds have no middle.
     covered = np.stack(edges[2:], axis=-1)
     bounds = np.clip(bounds, covered.min(axis=-1)[:, None], covered.max(axis=-1)[:, None])
-    low, length = bounds[:, :-1], np.diff(bounds, axis=-1)
-    # The density at the ends by way of places within: at the ends themselves it may jump.
-    inner = [clutter.density(theta[:, None], low + part * length, origin) for part in (0.25, 0.75)]
-    ends = np.stack([1.5 * inner[0] - 0.5 * inner[1], 1.5 * inner[1] - 0.5 * inner[0]])
-    means = np.maximum(ends, 0.0)[:, :, None, :] * rho_step[:, None]
-    fixed = clutter.fixed_number
-    rise = means[1] - means[0]
-    is_flat = np.abs(rise) <= FLAT * np.maximum(means[0], means[1])
-    integral = integrated_tails(means, most, fixed)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        sloping = (integral[1] - integral[0]) / rise[..., None]
-    level = tails(0.5 * (means[0] + means[1]), most, fixed)[..., 1:]
-    share = np.where(is_flat[..., None], level, sloping)
-    cells = length[:, None, :] / rho_step[:, None]
-    return np.asarray((cells[..., None] * share).sum(axis=2))
+    found = np.zeros((len(theta), len(rho_step), most))
+    for low, high in zip(bounds.T[:-1], bounds.T[1:], strict=True):
+        length = high - low
+        if length.any():
+            # The density at the ends by way of places within: at the ends themselves it may jump.
+            near, far = (clutter.density(theta, low + part * length, origin) for part in (0.25, 0.75))
+            means = [
+                np.maximum(density, 0.0)[:, None] * rho_step
+                for density in (1.5 * near - 0.5 * far, 1.5 * far - 0.5 * near)
+            ]
+            cells = length[:, None] / rho_step
+            found += cells[..., None] * _mean_tails(means[0], means[1], most, clutter.fixed_number)
+    return found
+
+
+def _mean_tails(low: Array, high: Array, most: int, fixed: float | None) -> Array:
+    """Return the mean of P[N ≥ t], t = 1 … `most`, over mean numbers that go evenly from `low` to `high`."""
+    rise = high - low
+    is_flat = np.abs(rise) <= FLAT * np.maximum(low, high)
+    shares = tails(0.5 * (low + high), most, fixed)[..., 1:]
+    if not is_flat.all():
+        integrals = [integrated_tails(mean, most, fixed) for mean in (low, high)]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            sloping = (integrals[1] - integrals[0]) / rise[..., None]
+        shares = np.where(is_flat[..., None], shares, sloping)
+    return shares
 
 
 def false_cells(clutter: Clutter, grid: Grid, votes: int) -> float:
