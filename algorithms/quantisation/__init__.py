@@ -1,0 +1,1 @@
+"""Designing the quantisation of (θ, ρ): how votes spread, what rules follow, what a choice costs."""

@@ -1,0 +1,92 @@
+"""The command line: arguments in, documents and tables out; the work is done elsewhere.
+
+Heavy modules are imported inside the commands, so that `--help` answers at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hough_tui.cli.listings import initiators, schema, sets, validate
+from hough_tui.cli.plots import initiate, simulate
+from hough_tui.cli.process import refuse, reported
+from hough_tui.cli.runs import batch, reproduce, results_app
+
+app = typer.Typer(
+    name="hough-tui",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def print_version(asked: bool) -> None:
+    """Print the version and end."""
+    if asked:
+        from hough_tui import __version__
+
+        print(f"hough-tui {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def about(
+    version: Annotated[
+        bool, typer.Option("--version", help="Print the version.", callback=print_version, is_eager=True)
+    ] = False,
+) -> None:
+    """Design and judge track initiation, above all by the Hough transform.
+
+    Without a command the application opens; with the name of a scenario set in place of one, it opens on
+    that set.
+    """
+
+
+@reported
+def open_application(
+    name: Annotated[
+        str | None, typer.Argument(metavar="SET", help="A YAML file, or the name of a bundled set.")
+    ] = None,
+) -> None:
+    """Open the application, on a set where one is given."""
+    from hough_tui.ui.terminal import require_terminal
+    from scenarios.bundled import bundled_paths
+
+    if name is not None and name not in bundled_paths() and not Path(name).exists():
+        from algorithms.parameters import unknown
+
+        known = [*bundled_paths(), *(command for command in commands() if command != "open")]
+        refuse(True, unknown(name, known, "file, bundled set or command"))
+    require_terminal()
+    from hough_tui.ui.app import run
+    from hough_tui.ui.interpreter import leave
+
+    leave(run(name))
+
+
+# As `--help` lists them.
+for command in (batch, initiate, simulate, reproduce, sets, initiators, validate, schema):
+    app.command()(command)
+app.command("open", hidden=True)(open_application)
+app.add_typer(results_app, name="results")
+
+
+def commands() -> list[str]:
+    """Return the names of the commands."""
+    named = [
+        command.name or command.callback.__name__ for command in app.registered_commands if command.callback
+    ]
+    return [*named, *(group.name or "" for group in app.registered_groups)]
+
+
+def main() -> None:
+    """Run the command line: without a command, the application is opened, on a set where one is named."""
+    arguments = sys.argv[1:]
+    if not arguments or not (arguments[0].startswith("-") or arguments[0] in commands()):
+        arguments = ["open", *arguments]
+    app(arguments)

@@ -1,0 +1,106 @@
+"""Commands that tell what there is, and whether a set is right."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated, Any
+
+import typer
+
+from hough_tui.cli.options import JsonOption
+from hough_tui.cli.output import output_width, print_renderables
+from hough_tui.cli.process import counted, refuse, reported
+
+
+@reported
+def sets(
+    name: Annotated[str | None, typer.Argument(metavar="NAME", help="Print the YAML of this set.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """List the bundled scenario sets, or print one to begin from."""
+    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.tables import listing
+    from scenarios.files import bundled_sets, locate, read_text
+
+    if name is not None:
+        refuse(as_json, "--json lists the sets: leave out the name")
+        sys.stdout.write(read_text(locate(name)))
+        return
+    known = bundled_sets()
+    if as_json:
+        sys.stdout.write(
+            json_text([{"name": found.name, "description": found.description} for found in known])
+        )
+        return
+    entries = [(found.name, found.description) for found in known]
+    print_renderables(listing("bundled scenario sets", entries, output_width()))
+
+
+@reported
+def initiators(
+    name: Annotated[
+        str | None, typer.Argument(metavar="NAME", help="Show the parameters of this one.")
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """List the initiators, or show the parameters of one."""
+    from algorithms.initiators.registry import initiator
+    from algorithms.initiators.registry import initiators as known
+    from hough_tui.experiments.declarations import declaration
+    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.tables import listing
+
+    chosen = [initiator(name)] if name else list(known().values())
+    told = [declaration(found) for found in chosen]
+    if as_json:
+        sys.stdout.write(json_text(told[0] if name else told))
+    elif name:
+        entries = [(found["name"], described(found)) for found in told[0]["parameters"]]
+        title = f"{name}: {told[0]['summary']}"
+        print_renderables(listing(title, entries, output_width(), ("parameter", "what it is")))
+    else:
+        entries = [(found["name"], found["summary"]) for found in told]
+        print_renderables(listing("initiators", entries, output_width()))
+
+
+def described(declared: dict[str, Any]) -> str:
+    """Return what a parameter is, what it may be, and what it is where nothing is given."""
+    default = "none" if declared["default"] is None else declared["default"]
+    text = f"{declared['help']} ({declared['allowed']}; default {default})"
+    return f"{text}; auto: {declared['auto']}" if declared["auto"] else text
+
+
+@reported
+def validate(
+    names: Annotated[list[str], typer.Argument(metavar="SET…", help="YAML files, or names of bundled sets.")],
+) -> None:
+    """Check scenario sets and say what is wrong, with file, line, column and field."""
+    from algorithms.errors import RequestError
+    from scenarios.files import load_set
+
+    wrong = []
+    for name in names:
+        try:
+            found = load_set(name)
+        except RequestError as error:
+            wrong.append(str(error))
+        else:
+            parts = {
+                "scenario": found.scenarios,
+                "initiator": found.initiators,
+                "experiment": found.experiments,
+            }
+            counts = ", ".join(counted(len(listed), part) for part, listed in parts.items())
+            print(f"{name}: valid: {counts}")
+    if wrong:
+        raise RequestError("\n".join(wrong))
+
+
+@reported
+def schema() -> None:
+    """Print the JSON Schema of scenario sets, for the completion of editors."""
+    from hough_tui.reports.documents import json_text
+    from scenarios.model import ScenarioSet
+
+    document = {"$schema": "https://json-schema.org/draft/2020-12/schema", **ScenarioSet.model_json_schema()}
+    sys.stdout.write(json_text(document))

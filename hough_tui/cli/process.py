@@ -1,0 +1,113 @@
+"""How a command meets the process it runs in: messages, exit statuses, signals."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import os
+import signal
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from hough_tui.experiments.engine import Job
+
+WRONG_REQUEST, FAILED, INTERRUPTED = 2, 1, 130
+
+
+def reported(command: Callable[..., None]) -> Callable[..., None]:
+    """Make a command report what goes wrong as one message and an exit status."""
+
+    @functools.wraps(command)
+    def run(*args: Any, **kwargs: Any) -> None:
+        from algorithms.errors import RequestError, WorkFailedError
+
+        try:
+            command(*args, **kwargs)
+            sys.stdout.flush()
+        except RequestError as error:
+            stop(str(error), WRONG_REQUEST)
+        except WorkFailedError as error:
+            stop(str(error), FAILED)
+        except KeyboardInterrupt as error:
+            stop("interrupted", getattr(error, "status", INTERRUPTED))
+        except BrokenPipeError:
+            # Who reads the output has closed it; the interpreter must not stumble over it again.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise typer.Exit(FAILED) from None
+        except OSError as error:
+            stop(f"{error.filename or 'the system'}: {error.strerror or error}", FAILED)
+        except MemoryError:
+            stop("there is not enough memory for this; give a smaller grid, or fewer scans or trials", FAILED)
+
+    return run
+
+
+def stop(message: str, status: int) -> None:
+    """Say on standard error why the command ends, and end it."""
+    tell(message)
+    raise typer.Exit(status)
+
+
+def counted(number: int, what: str) -> str:
+    """Return a number of things, in words."""
+    return f"{number:,} {what}" + ("" if number == 1 else "s")
+
+
+def tell(message: str) -> None:
+    """Say something on standard error."""
+    # A terminal that has gone away must not keep the work from being ended in order.
+    with contextlib.suppress(OSError):
+        print(f"hough-tui: {message}", file=sys.stderr, flush=True)
+
+
+def refuse(condition: bool, message: str) -> None:
+    """Raise a wrong request where a condition holds."""
+    from algorithms.errors import RequestError
+
+    if condition:
+        raise RequestError(message)
+
+
+def announce_compilation() -> None:
+    """Say that kernels must be compiled, where they must."""
+    from algorithms.compiled import is_cold
+
+    if is_cold():
+        tell("compiling the kernels, once for this version: up to 20 s")
+
+
+class EndedError(KeyboardInterrupt):
+    """The process was asked to end, or has lost its terminal."""
+
+    def __init__(self, number: int, _: object) -> None:
+        super().__init__()
+        self.status = 128 + number
+        raise self
+
+
+def finish(job: Job, description: str) -> None:
+    """Wait for a job with a progress bar on standard error; end it in order where the process must end."""
+    from hough_tui.reports.progress import ProgressBar
+
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, EndedError)
+    progress = job.progress
+    try:
+        with ProgressBar(description) as bar:
+            while not job.wait(0.1):
+                bar.update(
+                    progress.cells_done,
+                    len(progress.total),
+                    int(progress.done.sum()),
+                    int(progress.total.sum()),
+                )
+    except KeyboardInterrupt:
+        job.cancel()
+        # What a worker fails with while everything is being ended is no news.
+        with contextlib.suppress(Exception):
+            job.wait()
+        raise

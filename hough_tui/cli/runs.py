@@ -1,0 +1,181 @@
+"""Commands that run experiments, and that show the runs which were kept."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from hough_tui.cli.options import (
+    JsonOption,
+    Metric,
+    SeedOption,
+    TrialsOption,
+    WorkersOption,
+)
+from hough_tui.cli.output import is_coloured, output_width, print_renderables
+from hough_tui.cli.process import FAILED, announce_compilation, counted, finish, refuse, reported, tell
+
+
+@reported
+def batch(
+    sets: Annotated[list[str], typer.Argument(metavar="SET…", help="YAML files, or names of bundled sets.")],
+    experiment: Annotated[
+        list[str] | None, typer.Option(help="Run this experiment only; may be repeated.")
+    ] = None,
+    trials: TrialsOption = None,
+    seed: SeedOption = None,
+    workers: WorkersOption = None,
+    as_json: JsonOption = False,
+    csv: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the rows as CSV, too; - prints them.")
+    ] = None,
+    plot: Annotated[bool, typer.Option("--plot", help="Draw a chart of the rates below the tables.")] = False,
+    metric: Annotated[Metric, typer.Option(help="What --plot shows.")] = Metric.SUCCESS,
+    keep: Annotated[
+        bool, typer.Option("--keep/--no-keep", help="Keep the run below the data directory.")
+    ] = True,
+) -> None:
+    """Run the experiments of scenario sets and print their rates."""
+    refuse(plot and str(csv) == "-", "--csv - prints the rows and nothing else: leave out --plot")
+    refuse(
+        as_json and (plot or str(csv) == "-"),
+        "--json prints one document and nothing else: leave out --plot and --csv -",
+    )
+    from hough_tui.experiments.engine import Job
+    from hough_tui.experiments.plan import plan_run
+    from hough_tui.experiments.results import result
+    from hough_tui.reports.documents import csv_text, json_text
+    from scenarios.atomic import replace_file
+    from scenarios.files import load_set
+
+    plan = plan_run([load_set(name) for name in sets], experiments=experiment or (), trials=trials, seed=seed)
+    announce_compilation()
+    job = Job(plan, workers)
+    try:
+        finish(job, ", ".join(sets))
+    except KeyboardInterrupt:
+        if keep and job.rows():
+            keep_run(result(job))
+        raise
+    run = result(job)
+    status = keep_run(run) if keep else 0
+    if as_json:
+        sys.stdout.write(json_text(run.document))
+    elif str(csv) == "-":
+        sys.stdout.write(csv_text(run.document["rows"]))
+    else:
+        print_rates(run.document["rows"], metric if plot else None)
+    if csv is not None and str(csv) != "-":
+        replace_file(csv, csv_text(run.document["rows"]))
+    seconds = job.seconds
+    tell(
+        f"{counted(len(plan.cells), 'cell')}, {counted(plan.trials, 'trial')} in {seconds:.1f} s, "
+        f"{plan.trials / seconds:,.0f} a second"
+    )
+    if status:
+        raise typer.Exit(status)
+
+
+def keep_run(run: Any) -> int:
+    """Keep a run and say where; return the exit status, since a full disk must not cost the result."""
+    from hough_tui.experiments.store import FolderStore
+
+    try:
+        name = FolderStore().add(run)
+    except OSError as error:
+        tell(f"the run could not be kept: {error.filename or ''}: {error.strerror or error}")
+        return FAILED
+    tell(f"kept as {name}" + ("" if run.document["complete"] else " (the finished trials only)"))
+    return 0
+
+
+def print_rates(rows: list[dict[str, Any]], metric: Metric | None) -> None:
+    """Print the tables of rows, and a chart of each experiment where a metric is given."""
+    from itertools import groupby
+
+    from hough_tui.reports.charts import rate_chart
+    from hough_tui.reports.tables import rate_tables
+
+    width = output_width()
+    print_renderables(*rate_tables(rows, width))
+    if metric is None:
+        return
+    for (_, name), group in groupby(rows, key=lambda row: (row["set"], row["experiment"])):
+        print(f"\n{name}")
+        print(rate_chart(list(group), metric.value, min(width, 120), 22, is_coloured()))
+
+
+@reported
+def reproduce(
+    table: Annotated[
+        str | None, typer.Argument(metavar="TABLE", help="Which table; without one: all.")
+    ] = None,
+    trials: Annotated[int, typer.Option(min=2, max=10_000_000, help="Trials of every figure.")] = 4000,
+    seed: SeedOption = None,
+    workers: WorkersOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Print published tables beside what is measured here, with 95 % intervals."""
+    from hough_tui.experiments.engine import Job
+    from hough_tui.experiments.published import TABLES, compare, plan_table
+    from hough_tui.experiments.published import published_table as find_table
+    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.tables import published_table
+
+    documents = []
+    for chosen in [find_table(table)] if table else list(TABLES.values()):
+        plan = plan_table(chosen, trials, seed)
+        announce_compilation()
+        job = Job(plan, workers)
+        finish(job, chosen.name)
+        documents.append(compare(chosen, job))
+    if as_json:
+        sys.stdout.write(json_text(documents[0] if table else {"tables": documents}))
+        return
+    print_renderables(*(published_table(document, output_width()) for document in documents))
+
+
+results_app = typer.Typer(help="List and show the runs that were kept.", no_args_is_help=True)
+
+
+@results_app.command("list")
+@reported
+def list_results(as_json: JsonOption = False) -> None:
+    """List the runs that were kept, the newest first."""
+    from hough_tui.experiments.store import FolderStore
+    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.tables import listing
+
+    names = FolderStore().names()
+    if as_json:
+        sys.stdout.write(json_text(names))
+    elif names:
+        store = FolderStore()
+        documents = [(name, store.document(name)) for name in names]
+        told = [(name, f"{len(found['rows'])} rows, seed {found['seed']}") for name, found in documents]
+        print_renderables(listing("runs", told, output_width()))
+    else:
+        tell("no run has been kept yet; `hough-tui batch` keeps each of its runs")
+
+
+@results_app.command("show")
+@reported
+def show_result(
+    name: Annotated[str, typer.Argument(metavar="RUN", help="Its name, or a part of it that fits no other.")],
+    as_json: JsonOption = False,
+    plot: Annotated[bool, typer.Option("--plot", help="Draw a chart of the rates below the tables.")] = False,
+    metric: Annotated[Metric, typer.Option(help="What --plot shows.")] = Metric.SUCCESS,
+) -> None:
+    """Show the rates of a run that was kept."""
+    refuse(as_json and plot, "--json prints one document and nothing else: leave out --plot")
+    from hough_tui.experiments.store import FolderStore
+    from hough_tui.reports.documents import json_text
+
+    document = FolderStore().document(name)
+    if as_json:
+        sys.stdout.write(json_text(document))
+    else:
+        print_rates(document["rows"], metric if plot else None)
