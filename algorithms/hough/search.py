@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -158,8 +159,8 @@ def search(chunk: PlotChunk, grid: Grid, peaks: PeakSearch, weighting: Weighting
 
 
 def _greatest(
-    cells: NDArray[np.generic], offsets: NDArray[np.int64], most: int, last: bool
-) -> tuple[NDArray[np.generic], NDArray[np.int64]]:
+    cells: NDArray[Any], offsets: NDArray[np.int64], most: int, last: bool
+) -> tuple[NDArray[Any], NDArray[np.int64]]:
     """Return the greatest cells of each trial, at most so many, in the order in which they came."""
     counts = np.diff(offsets)
     trial = np.repeat(np.arange(len(counts)), counts)

@@ -118,7 +118,7 @@ WRONG_FIELDS = {
     "too many scans": ("scans: 5", "scans: ▸100001", ["scenarios[0].scans", "100001", "at most 100000"]),
     "past any whole number": ("scans: 5", f"scans: ▸{10**30}", ["scenarios[0].scans", "at most"]),
     "too many rows": ("theta_bins: 90", "theta_bins: ▸100001", ["grid.theta_bins", "at most 100000"]),
-    "a parameter of another": ("votes: 4", "▸maxima: 4", ["initiators[0].maxima", "known: grid, votes"]),
+    "a parameter of another": ("votes: 4", "▸mode: sound", ["initiators[0].mode", "known: grid, votes"]),
     "text for truth": ("trials: 10", "control: ▸no", ["experiments[0].control", "'no'", "true or false"]),
     "negative seed": ("seed: 3", "seed: ▸-1", ["experiments[0].seed", "-1", "at least 0"]),
     "no area": ("x: [0, 100]", "x: ▸[5, 5]", ["region.x", "[5, 5]", "less than"]),

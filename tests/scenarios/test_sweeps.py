@@ -157,7 +157,7 @@ def test_the_nearest_field_is_named():
 def test_a_swept_parameter_must_belong_to_every_initiator():
     assert place("maxima", ONE, [SEQUENTIAL]) == ("initiator", ("maxima",))
     assert place("theta_bins", ONE, [STANDARD, SEQUENTIAL]) == ("initiator", ("grid", "theta_bins"))
-    for key, entries in (("maxima", [STANDARD, SEQUENTIAL]), ("grid.theta_bins", [STANDARD, MODIFIED])):
+    for key, entries in (("mode", [STANDARD, SEQUENTIAL]), ("grid.theta_bins", [STANDARD, MODIFIED])):
         with pytest.raises(FieldError, match="must belong to every initiator of the experiment"):
             place(key, ONE, entries)
 
