@@ -186,19 +186,22 @@ def default_search(question: Question) -> SearchGrid:
 def survey(question: Question, search: SearchGrid) -> Survey:
     """Return P_D and false cells of every quantisation of a search at every threshold."""
     clutter, fixed = question.clutter, question.clutter.fixed_number
-    densities = [clutter.density_on(line) for line in question.lines]
-    crowd = max(densities) * float(search.rho_step[-1])
+    others = [
+        np.array([question.other_votes(line, float(step)) for step in search.rho_step])
+        for line in question.lines
+    ]
+    crowd = float(np.max(others))
     scans = max(line.scans for line in question.lines)
     # Past n + n²/9 clutter scatters by so much that n votes of a target are lost in it.
     likely = scans + math.ceil(min(crowd + 8.0 * math.sqrt(crowd), 200.0 + scans**2 / 9.0)) + 8
     most = min(likely, MOST_VOTES)
     p_detection = np.zeros((len(search.theta_bins), len(search.rho_step), most))
-    for line, density in zip(question.lines, densities, strict=True):
+    for line, other in zip(question.lines, others, strict=True):
         own = home_votes(
             search.theta_step, search.rho_step, line.sigma, line.scans, line.extent,
             question.detection_probability, COARSE,
         )  # fmt: skip
-        p_detection += reaching(own, density * search.rho_step, most, fixed)
+        p_detection += reaching(own, other, most, fixed)
     # Rows are many, and the mean over them is that over a few angles that are evenly spread.
     angles = (np.arange(ANGLES) + 0.5) * math.pi / ANGLES
     by_row = false_cells_by_row(clutter, angles, search.rho_step, most)

@@ -24,7 +24,7 @@ class LinePrediction:
     line : of the target
     share : mean share of its votes in its home cell
     p_detection : probability that its home cell reaches the threshold
-    clutter_votes : mean number of clutter votes in that cell
+    other_votes : mean number of votes in that cell by clutter and by the other targets
     peak_rows : rows that its peak reaches to each side
     window : the suppression window that covers its peak
     """
@@ -32,7 +32,7 @@ class LinePrediction:
     line: TargetLine
     share: float
     p_detection: float
-    clutter_votes: float
+    other_votes: float
     peak_rows: float
     window: SuppressionWindow
 
@@ -91,7 +91,7 @@ def predict(question: Question, grid: Grid, votes: int) -> Prediction:
 
 
 def _predict_line(question: Question, line: TargetLine, grid: Grid, votes: int) -> LinePrediction:
-    clutter_votes = grid.rho_step * question.clutter.density_on(line)
+    other_votes = question.other_votes(line, grid.rho_step)
     probability = question.detection_probability
     own = home_votes(
         np.array([grid.theta_step]),
@@ -101,7 +101,7 @@ def _predict_line(question: Question, line: TargetLine, grid: Grid, votes: int) 
         line.extent,
         probability,
     )
-    reached = reaching(own, np.array([clutter_votes]), votes, question.clutter.fixed_number)
+    reached = reaching(own, np.array([other_votes]), votes, question.clutter.fixed_number)
     expected = probability * line.scans
     rows = peak_rows(expected, line.extent, votes, grid.theta_step, grid.rho_step)
     _, along = line.about(grid.origin)
@@ -109,7 +109,7 @@ def _predict_line(question: Question, line: TargetLine, grid: Grid, votes: int) 
         line,
         float(own[0, 0] @ np.arange(line.scans + 1)) / expected if expected else 0.0,
         float(reached[0, 0, votes - 1]),
-        clutter_votes,
+        other_votes,
         rows,
         suppression_window(rows, line.sigma, line.extent, along, grid.theta_step, grid.rho_step),
     )
@@ -143,17 +143,9 @@ def placed_votes(line: TargetLine, grid: Grid) -> PlacedVotes:
     """
     assert line.theta is not None
     row = math.floor(line.theta / grid.theta_step - grid.theta_offset + 0.5)
-    rho, along = line.about(grid.origin)
-    # Across the seam the same line has −ρ, and runs the other way.
-    turns = row // grid.theta_bins
-    theta = line.theta - turns * math.pi
-    row -= turns * grid.theta_bins
-    sign = -1.0 if turns % 2 else 1.0
-    delta = (row + grid.theta_offset) * grid.theta_step - theta
-    half = 0.5 * line.extent
-    votes = VoteDistribution.of_line(
-        line.sigma, (sign * along - half, sign * along + half), delta, sign * rho
-    )
+    # Beyond the seam the line has −ρ, which the row's own angle gives.
+    row %= grid.theta_bins
+    votes = line.votes_at((row + grid.theta_offset) * grid.theta_step, grid.origin)
     column = math.floor((votes.centre - grid.rho_min) / grid.rho_step)
     middle = grid.rho_min + (column + 0.5) * grid.rho_step
     share = float(votes.share(middle - votes.centre, grid.rho_step))

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from algorithms.context import Box
 from algorithms.errors import RequestError
 from algorithms.hough.lines import line_through
+from algorithms.quantisation.spread import VoteDistribution
 
 Array = NDArray[np.float64]
 
@@ -71,6 +72,14 @@ class TargetLine:
         x, y = self.middle[0] - origin[0], self.middle[1] - origin[1]
         cosine, sine = math.cos(self.theta), math.sin(self.theta)
         return x * cosine + y * sine, y * cosine - x * sine
+
+    def votes_at(self, theta: float, origin: tuple[float, float] = (0.0, 0.0)) -> VoteDistribution:
+        """Return how its plots vote in the row at an angle, with ρ measured from an origin."""
+        rho, along = self.about(origin)
+        # The distribution is exact for any angle, so it needs no row on this side of the seam.
+        half = 0.5 * self.extent
+        delta = theta - (self.theta or 0.0)
+        return VoteDistribution.of_line(self.sigma, (along - half, along + half), delta, rho)
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,3 +212,19 @@ class Question:
     def noise(self) -> float:
         """The greatest standard deviation of the noise across a line."""
         return max(line.sigma for line in self.lines)
+
+    def other_votes(self, line: TargetLine, rho_step: float) -> float:
+        """Return the mean number of votes, in the home cell of a target, that are not its own.
+
+        Clutter lies on its line, and so may plots of the other targets, where their tracks cross it.
+        """
+        votes = rho_step * self.clutter.density_on(line)
+        if line.theta is None:
+            return votes
+        rho, _ = line.about((0.0, 0.0))
+        for other in self.lines:
+            if other is not line and other.theta is not None:
+                spread = other.votes_at(line.theta)
+                plots = self.detection_probability * other.scans
+                votes += plots * float(spread.share(rho - spread.centre, rho_step))
+        return votes

@@ -125,6 +125,23 @@ def test_a_line_outside_the_grid_has_no_home_cell():
     assert (placed.column, placed.share) == (-1, 0.0)
 
 
+def test_plots_of_other_targets_count_where_their_tracks_cross_the_line():
+    motions = [((40.0, 40.0), (0.3, 0.3)), ((40.0, 52.0), (0.3, -0.2)), ((10.0, 80.0), (0.3, 0.0))]
+    lines = tuple(TargetLine.of_motion(*motion, 20, 4.0, (0.3, 0.3)) for motion in motions)
+    question = Question(lines, 0.9, Clutter(), SQUARE)
+    random = np.random.default_rng(4)
+    own, (first, velocity) = lines[0], motions[1]
+    # Plots anywhere along the other's track: their share within half a column of the line.
+    elapsed = random.uniform(0, 19 * 4.0, 200_000)
+    place = np.array(first) + elapsed[:, None] * np.array(velocity) + random.normal(0, 0.3, (200_000, 2))
+    away = place @ [math.cos(own.theta), math.sin(own.theta)] - own.about((0.0, 0.0))[0]
+    expected = 18 * np.mean(np.abs(away) < 1.0)
+    assert expected > 1
+    assert question.other_votes(own, 2.0) == pytest.approx(expected, rel=0.03)
+    # Nobody crosses the third one's line.
+    assert question.other_votes(lines[2], 2.0) == pytest.approx(0.0, abs=1e-6)
+
+
 def test_a_question_that_cannot_be_asked_is_refused():
     line = TargetLine(0.1, 15, 20.0)
     for changed, words in (
