@@ -55,3 +55,19 @@ def mean_interval(values: ArrayLike, z: float = Z95) -> tuple[float, float]:
     """Return the interval of the mean of per-trial values in [0, 1], by Wilson's formula."""
     values = np.asarray(values, dtype=float)
     return wilson(float(values.mean()), effective_count(values), z)
+
+
+def normal_interval(values: ArrayLike, z: float = Z95) -> tuple[float, float]:
+    """Return the interval of the mean of per-trial values of any size, by the normal distribution.
+
+    Parameters
+    ----------
+    values : per-trial values, shape (n,), n ≥ 1; of one value alone the interval is unbounded
+    z : normal quantile
+    """
+    values = np.asarray(values, dtype=float)
+    mean = float(values.mean())
+    if len(values) < 2:
+        return -math.inf, math.inf
+    half = z * float(values.std(ddof=1)) / math.sqrt(len(values))
+    return mean - half, mean + half

@@ -120,8 +120,8 @@ def reproduce(
 ) -> None:
     """Print published tables beside what is measured here, with 95 % intervals."""
     from hough_tui.experiments.engine import Job
-    from hough_tui.experiments.published import TABLES, compare, plan_table
-    from hough_tui.experiments.published import published_table as find_table
+    from hough_tui.experiments.published.comparison import TABLES, compare, plan_table
+    from hough_tui.experiments.published.comparison import published_table as find_table
     from hough_tui.reports.documents import json_text
     from hough_tui.reports.tables import published_table
 

@@ -40,6 +40,8 @@ KNOWN = {
     "votes_outside_per_trial": Metric("votes outside the grid a trial"),
     "theta_rmse_deg": Metric("θ RMSE", "°"),
     "rho_rmse": Metric("ρ RMSE"),
+    "theta_mse": Metric("θ MSE", "rad²"),
+    "rho_mse": Metric("ρ MSE"),
     "seconds_per_trial": Metric("time a trial", "s"),
 }
 

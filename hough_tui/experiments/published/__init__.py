@@ -1,0 +1,1 @@
+"""Published tables, and how they compare with what is measured here."""
