@@ -22,7 +22,8 @@ from algorithms.quantisation.prediction import predict
 from algorithms.quantisation.question import Question, TargetLine
 from algorithms.quantisation.rules import widest_row
 from algorithms.quantisation.spread import VoteDistribution
-from hough_tui.experiments.advice import Trials, question_of, run_trials
+from hough_tui.experiments.confirmation import Trials, run_trials
+from hough_tui.experiments.designs import Demands, question_of
 from scenarios.model import Scenario
 
 Answer = TypeVar("Answer")
@@ -204,7 +205,7 @@ def rms(values: list[float]) -> float:
 def picks() -> None:
     """Print the advisor's pick beside the best of a search by trials alone, both judged by fresh trials."""
     for scene, bound in zip(SCENES, (1.0, 0.5, 10.0, 3.0), strict=True):
-        question = question_of(scene, false_cells=bound)
+        question = question_of(scene, Demands(false_cells=bound))
         search = small_search(question)
         began = time.perf_counter()
         advice = advise(question, search)

@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 
 WIDTHS = (
     1.0, 1.25, 1.5, 1.75, 2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5, 3.75, 4.0, 4.5, 5.0, 5.5, 6.0, 7.0, 8.0, 10.0,
+    12.0, 16.0, 20.0,
 )  # fmt: skip
 """The Δρ of the search, in standard deviations of the noise."""
 

@@ -1,134 +1,167 @@
-"""The design of a quantisation for a scenario: question, and the trials that confirm an answer."""
+"""A recommended quantisation as a document, with its reasons in words."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import math
+from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
+from algorithms.hough.grid import BYTES_PER_CELL
+from algorithms.quantisation.advisor import WIDTHS, Advice
+from algorithms.quantisation.prediction import LinePrediction, predict
+from algorithms.quantisation.rules import resolvability, widest_row
+from algorithms.quantisation.spread import VoteDistribution
+from hough_tui.experiments.designs import Design
 
-from algorithms.errors import RequestError
-from algorithms.hough.grid import Grid
-from algorithms.quantisation.measurement import count_cells
-from algorithms.quantisation.question import Clutter, ClutterSource, Question, TargetLine
-from scenarios.model import Scenario
-from scenarios.simulate import World, draw
-
-CHUNK = 250
-"""Trials that are drawn together."""
+POOR = 0.5
+"""P_D below which the reader is warned."""
 
 
-def target_lines(scenario: Scenario) -> tuple[TargetLine, ...]:
-    """Return the lines of the targets that move and are there within the batch."""
-    lines = []
-    for target in scenario.targets:
-        last = scenario.scans - 1 if target.death is None else min(target.death, scenario.scans - 1)
-        scans = last - target.birth + 1
-        if scans >= 1 and not target.stands_still:
-            lines.append(
-                TargetLine.of_motion(
-                    target.position, target.velocity, scans, scenario.interval, scenario.sensor.axes
-                )
-            )
-    return tuple(lines)
+def document(design: Design, advice: Advice) -> dict[str, Any]:
+    """Return a recommendation as `hough-tui advise --json` prints it."""
+    grid, told = advice.grid, advice.prediction
+    best, search = advice.by_step(), advice.survey.search
+    return {
+        "theta_bins": grid.theta_bins,
+        "theta_step_deg": math.degrees(grid.theta_step),
+        "rho_step": grid.rho_step,
+        "votes": advice.votes,
+        "p_detection": told.p_detection,
+        "expected_false_cells": told.false_cells,
+        "reasons": reasons(design, advice),
+        "unit": design.unit.value,
+        "assumed": design.assumed,
+        "false_cells_bound": advice.question.false_cells,
+        "share": told.share,
+        "rho_bins": grid.rho_bins,
+        "rho_min": grid.rho_min,
+        "origin": list(grid.origin),
+        "bytes": grid.theta_bins * grid.rho_bins * BYTES_PER_CELL,
+        "suppress_theta": told.window.theta,
+        "suppress_rho": told.window.rho_upright,
+        "suppress_rho_sheared": told.window.rho,
+        "targets": [
+            _target(name, line) for name, line in zip(design.names, advice.prediction.lines, strict=True)
+        ],
+        "trade_off": [{"false_cells": bound, "p_detection": rate} for bound, rate in advice.trade_off()],
+        "map": {
+            "theta_bins": search.theta_bins,
+            "rho_step": search.rho_step,
+            "p_detection": best.p_detection,
+            "votes": best.votes,
+            "allowed": advice.survey.is_allowed,
+        },
+    }
 
 
-def clutter_of(scenario: Scenario) -> Clutter:
-    """Return the clutter of a scenario's batch."""
-    return Clutter(
-        tuple(
-            ClutterSource(source.rate * scenario.scans, (source.region or scenario.region).box)
-            for source in scenario.clutter
+def _target(name: str, told: LinePrediction) -> dict[str, Any]:
+    return {
+        "name": name,
+        "scans": told.line.scans,
+        "extent": told.line.extent,
+        "p_detection": told.p_detection,
+        "share": told.share,
+        "other_votes": told.other_votes,
+        "peak_rows": told.peak_rows,
+    }
+
+
+def reasons(design: Design, advice: Advice) -> list[str]:
+    """Return why a quantisation is recommended, sentence by sentence."""
+    said = [_of_noise(design, advice), _of_extent(design, advice), _of_share(design, advice)]
+    said += [_of_threshold(advice), _of_peak(advice), *_of_separation(design, advice)]
+    told = advice.prediction
+    if told.p_detection < POOR:
+        said.append(
+            f"Within this bound a target is found in {_percent(told.p_detection)} of batches only: allow "
+            "more false cells, take more scans, or let a second stage sort out what a lower threshold lets "
+            "through."
         )
+    return said
+
+
+def _of_noise(design: Design, advice: Advice) -> str:
+    sigma = advice.question.noise
+    half = VoteDistribution(sigma, 0.0, 0.0).half_width(0.95)
+    return (
+        f"Noise of σ = {_length(design, sigma)} across a line spreads 95 % of its votes over "
+        f"{_length(design, 2.0 * half)}: a column that is to hold them all must be at least as wide."
     )
 
 
-def question_of(
-    scenario: Scenario,
-    false_cells: float = 1.0,
-    kappa: float = 1.0,
-    separation: float | None = None,
-    confidence: float = 0.95,
-) -> Question:
-    """Return the question of a scenario: its targets' lines, each as long as it is, in its clutter.
-
-    Raises
-    ------
-    RequestError
-        Where no target moves, or a bound is not allowed.
-    """
-    lines = target_lines(scenario)
-    if not lines:
-        raise RequestError(
-            f"{scenario.name}: there is no target that moves, so no line to design a quantisation for; "
-            "give a speed in place of a scenario"
-        )
-    return Question(
-        lines,
-        scenario.sensor.detection_probability,
-        clutter_of(scenario),
-        scenario.region.box,
-        false_cells,
-        kappa,
-        separation,
-        confidence,
+def _of_extent(design: Design, advice: Advice) -> str:
+    question, step = advice.question, advice.grid.theta_step
+    line = max(question.lines, key=lambda line: line.extent / line.sigma if line.sigma else 0.0)
+    radius = 0.5 * line.extent * math.sin(0.5 * step)
+    widest = math.degrees(widest_row(line.sigma, line.extent, question.kappa))
+    longest = "The" if len(question.lines) == 1 else "The longest"
+    return (
+        f"{longest} target's line is {_length(design, line.extent)} long within the batch. Midway between "
+        f"two rows its extent spreads votes by another ±{_length(design, radius)}, "
+        f"{radius / line.sigma:.2f} σ with Δθ = {math.degrees(step):.3g}°; at most {question.kappa:g} σ is "
+        f"allowed, which is Δθ ≤ {widest:.3g}°."
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Trials:
-    """What trials of a quantisation gave.
-
-    Attributes
-    ----------
-    home : int64 (trials, targets), votes of the home cells
-    block : int64 (trials, targets), the greatest of the 3 × 3 cells about each
-    cells : int64 (trials, most + 1), number of cells with so many votes by clutter alone
-    """
-
-    home: NDArray[np.int64]
-    block: NDArray[np.int64]
-    cells: NDArray[np.int64]
-
-    def rate(self, votes: int) -> float:
-        """Return the rate at which home cells reach a threshold."""
-        return float((self.home >= votes).mean())
-
-    def block_rate(self, votes: int) -> float:
-        """Return the rate at which some cell of the 3 × 3 block reaches a threshold."""
-        return float((self.block >= votes).mean())
-
-    def false_cells(self, votes: int) -> NDArray[np.int64]:
-        """Return how many cells of each trial clutter alone lifts to a threshold."""
-        return np.asarray(self.cells[:, votes:].sum(axis=1))
-
-
-def run_trials(
-    scenarios: Sequence[Scenario], grid: Grid, trials: int, seed: int, most: int, first: int = 0
-) -> Trials:
-    """Return the votes of home cells and of clutter in trials, each on a grid that is moved by chance.
-
-    Parameters
-    ----------
-    scenarios : with equally many moving targets; they share the trials
-    grid : the quantisation
-    trials, seed, first : how many trials, which draws, the number of the first
-    most : votes from which on cells are counted together
-    """
-    parts = []
-    for index, scenario in enumerate(scenarios):
-        begin, end = (trials * place // len(scenarios) for place in (index, index + 1))
-        world, lines = World.of(scenario), target_lines(scenario)
-        theta = np.array([line.theta for line in lines], dtype=float)
-        middle = np.array([line.middle for line in lines], dtype=float).reshape(-1, 2)
-        for at in range(begin, end, CHUNK):
-            count = min(CHUNK, end - at)
-            drawn = draw(world, seed, first + at, count)
-            shifts = np.random.default_rng([seed, first + at]).random((count, 2))
-            own = count_cells(drawn.chunk, grid, theta, middle, shifts, most)
-            alone = count_cells(drawn.without_targets().chunk, grid, theta, middle, shifts, most)
-            parts.append(Trials(own.home, own.block, alone.cells))
-    return Trials(
-        *(np.concatenate([getattr(part, name) for part in parts]) for name in ("home", "block", "cells"))
+def _of_share(design: Design, advice: Advice) -> str:
+    grid, told = advice.grid, advice.prediction
+    sigma = min(line.sigma for line in advice.question.lines if line.sigma)
+    alone = VoteDistribution(sigma, 0.0, 0.0).mean_share(grid.rho_step)
+    text = (
+        f"A column of {_length(design, grid.rho_step)}, {grid.rho_step / sigma:.3g} σ, holds "
+        f"{_percent(told.share)} of a target's votes in its home cell on the mean ({_percent(alone)} if "
+        "there were noise alone): a wider one holds more of them, and more clutter"
     )
+    if grid.rho_step >= WIDTHS[-1] * sigma:
+        text += "; it is the widest that was tried"
+    return text + "."
+
+
+def _of_threshold(advice: Advice) -> str:
+    told, votes = advice.prediction, advice.votes
+    other = max(line.other_votes for line in told.lines)
+    expected = max(advice.question.detection_probability * line.line.scans for line in told.lines)
+    lower = predict(advice.question, advice.grid, votes - 1).false_cells if votes > 1 else math.inf
+    if lower > advice.question.false_cells:
+        below = "" if votes == 1 else f"; with one vote less it would be {lower:.3g}"
+    else:
+        below = "; a lower threshold would find hardly more"
+    return (
+        f"The home cell holds {expected * told.share:.3g} of the {expected:.3g} votes expected of a target, "
+        f"and up to {other:.3g} others. Clutter alone lifts {told.false_cells:.3g} cells to {votes} votes, "
+        f"where {advice.question.false_cells:g} are allowed{below}."
+    )
+
+
+def _of_peak(advice: Advice) -> str:
+    window = advice.prediction.window
+    rows = max(line.peak_rows for line in advice.prediction.lines)
+    columns = f"±{window.rho} columns along its slant"
+    if window.rho_upright > window.rho:
+        columns += f" (±{window.rho_upright} in an upright window)"
+    return (
+        f"A peak reaches {rows:.1f} rows to each side on the mean; a suppression window of ±{window.theta} "
+        f"rows and {columns} covers it."
+    )
+
+
+def _of_separation(design: Design, advice: Advice) -> list[str]:
+    question, grid = advice.question, advice.grid
+    halves = []
+    for line in question.lines:
+        half = 0.5 * line.extent
+        votes = VoteDistribution.of_line(line.sigma, (-half, half), 0.5 * grid.theta_step)
+        halves.append(resolvability(votes, 0.0, question.confidence).half_width)
+    least = grid.rho_step + 2.0 * max(halves)
+    return [
+        f"Parallel lines are held apart from {_length(design, least)} on, with "
+        f"{_percent(question.confidence)} of each one's votes; a valley between them shows from "
+        f"{_length(design, least + grid.rho_step)} on."
+    ]
+
+
+def _length(design: Design, value: float) -> str:
+    return f"{value:.3g} {design.unit.value}"
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.3g} %"
