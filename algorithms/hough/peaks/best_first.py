@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from algorithms.compiled import kernel
-from algorithms.hough.peaks.cells import centroid, written
+from algorithms.hough.peaks.cells import centroid, scatter, written
 from algorithms.hough.peaks.threshold import at_threshold
 from algorithms.hough.voting import FIRST
 
@@ -53,12 +53,15 @@ def best_first(  # type: ignore[no-untyped-def]
     The window has ±rows rows and, in each of them, ±columns columns about the vote of the
     centroid of the cell's own plots; with `wrap` it goes on across θ = 0 and π.
 
+    Of equal cells the one whose votes scatter least comes first: the cells on both sides of a
+    peak's best row often have as many votes as it has.
+
     Parameters
     ----------
     values : votes or weighted votes, changed
     threshold : least value of a cell, positive
     maxima : how many are taken at most
-    last : whether of equal cells the last in θ-major order is taken
+    last : whether of cells that are equal in that, too, the last in θ-major order is taken
     x, y : float64 (n,), measured from the grid's origin
     cosine, sine : float64 (rows,)
     cells, count : int64 or float64 (≥ count, 3), the cells written so far and their number
@@ -68,14 +71,29 @@ def best_first(  # type: ignore[no-untyped-def]
     candidates = cells[first:end].copy()
     if last:
         candidates = candidates[::-1].copy()
-    for candidate in np.argsort(-candidates[:, 2], kind="mergesort"):
-        row, column = int(candidates[candidate, 0]), int(candidates[candidate, 1]) + 1
-        if count - first == maxima:
-            break
-        if values[row, column] == 0:
-            continue
-        cells, count = written(cells, count, row, column, values[row, column])
-        values[row, column] = 0
-        centre_x, centre_y = centroid(x, y, cosine[row], sine[row], rho_min, rho_step, width, column)
-        _clear_along(values, row, rows, columns, wrap, centre_x, centre_y, cosine, sine, rho_min, rho_step)
+    order = np.argsort(-candidates[:, 2], kind="mergesort")
+    scatters = np.empty(len(order))
+    begin = 0
+    while begin < len(order) and count - first < maxima:
+        run = begin + 1
+        while run < len(order) and candidates[order[run], 2] == candidates[order[begin], 2]:
+            run += 1
+        if run > begin + 1:
+            for place in range(begin, run):
+                row, column = int(candidates[order[place], 0]), int(candidates[order[place], 1]) + 1
+                scatters[place] = np.inf
+                if values[row, column] != 0:
+                    scatters[place] = scatter(x, y, cosine[row], sine[row], rho_min, rho_step, width, column)
+            order[begin:run] = order[begin:run][np.argsort(scatters[begin:run], kind="mergesort")]
+        for place in range(begin, run):
+            row, column = int(candidates[order[place], 0]), int(candidates[order[place], 1]) + 1
+            if values[row, column] == 0 or count - first == maxima:
+                continue
+            cells, count = written(cells, count, row, column, values[row, column])
+            values[row, column] = 0
+            centre_x, centre_y = centroid(x, y, cosine[row], sine[row], rho_min, rho_step, width, column)
+            _clear_along(
+                values, row, rows, columns, wrap, centre_x, centre_y, cosine, sine, rho_min, rho_step
+            )
+        begin = run
     return cells, count

@@ -78,3 +78,40 @@ def centroid(x, y, cosine, sine, rho_min, rho_step, width, column):  # type: ign
             sum_x += x[plot]
             sum_y += y[plot]
     return sum_x / voters, sum_y / voters
+
+
+@kernel
+def scatter(x, y, cosine, sine, rho_min, rho_step, width, column):  # type: ignore[no-untyped-def]
+    """Return the sample variance of the ρ that voted for a column of a row; infinite for fewer than two."""
+    voters, mean, squares = 0, 0.0, 0.0
+    for plot in range(len(x)):
+        if column_of(x[plot], y[plot], cosine, sine, rho_min, rho_step, width) == column:
+            rho = x[plot] * cosine + y[plot] * sine
+            voters += 1
+            step = rho - mean
+            mean += step / voters
+            squares += step * (rho - mean)
+    return squares / (voters - 1) if voters > 1 else np.inf
+
+
+@kernel
+def least_scattered(values, value, last, x, y, cosine, sine, rho_min, rho_step):  # type: ignore[no-untyped-def]
+    """Return row and accumulator column of the cell, of those with a value, whose votes scatter least.
+
+    Of equals the first in θ-major order is taken, or with `last` the last.
+    """
+    width = values.shape[1]
+    best_row, best_column, least = -1, -1, np.inf
+    for row in range(values.shape[0]):
+        hits = np.int32(0)
+        for column in range(1, width - 1):
+            hits += np.int32(values[row, column] == value)
+        if hits == 0:
+            continue
+        for column in range(1, width - 1):
+            if values[row, column] != value:
+                continue
+            found = scatter(x, y, cosine[row], sine[row], rho_min, rho_step, width, column)
+            if best_row < 0 or found < least or (last and found == least):
+                best_row, best_column, least = row, column, found
+    return best_row, best_column

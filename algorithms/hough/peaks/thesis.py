@@ -5,22 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from algorithms.compiled import kernel
-from algorithms.hough.peaks.cells import column_of
+from algorithms.hough.peaks.cells import scatter
 from algorithms.hough.peaks.threshold import at_threshold
-
-
-@kernel
-def _squares(x, y, cosine, sine, rho_min, rho_step, width, column):  # type: ignore[no-untyped-def]
-    """Return the sample variance of the ρ that voted for a cell; infinite for fewer than two."""
-    voters, mean, squares = 0, 0.0, 0.0
-    for plot in range(len(x)):
-        if column_of(x[plot], y[plot], cosine, sine, rho_min, rho_step, width) == column:
-            rho = x[plot] * cosine + y[plot] * sine
-            voters += 1
-            step = rho - mean
-            mean += step / voters
-            squares += step * (rho - mean)
-    return squares / (voters - 1) if voters > 1 else np.inf
 
 
 @kernel
@@ -64,8 +50,8 @@ def least_deviations(  # type: ignore[no-untyped-def]
                 continue
             is_left[other - first] = False
             if least < 0.0:
-                least = _squares(x, y, cosine[row], sine[row], rho_min, rho_step, width, column + 1)
-            found = _squares(
+                least = scatter(x, y, cosine[row], sine[row], rho_min, rho_step, width, column + 1)
+            found = scatter(
                 x, y, cosine[other_row], sine[other_row], rho_min, rho_step, width, other_column + 1
             )
             if found < least or (last and found == least):

@@ -6,7 +6,7 @@ import numpy as np
 
 from algorithms.compiled import kernel
 from algorithms.hough.peaks.best_first import window_column, window_row
-from algorithms.hough.peaks.cells import centroid, column_of, maximum, written
+from algorithms.hough.peaks.cells import centroid, column_of, least_scattered, maximum, written
 from algorithms.hough.weighting import weigh
 
 
@@ -44,10 +44,13 @@ def removed_votes(  # type: ignore[no-untyped-def]
 ):  # fmt: skip
     """Append the greatest cell and take back every vote of its plots, until none reaches the threshold.
 
-    The plots of a cell are those that voted within ±columns of it in its row (with ±rows, also
-    within the window of `best_first` in the rows beside it). Weighted votes are no sums over
-    plots: without the plots of a peak the deviations of the cells that they crossed shrink, and
-    the least of a θ or a ρ may be another one; so the plots that are left are weighed anew.
+    Of equal cells the one whose votes scatter least is taken. Its plots are those that voted within
+    ±columns of it in its row (with ±rows, also within the window of `best_first` in the rows
+    beside it).
+
+    Weighted votes are no sums over plots: without the plots of a peak the deviations of the cells
+    that they crossed shrink, and the least of a θ or a ρ may be another one. So the plots that are
+    left are weighed anew.
 
     Parameters
     ----------
@@ -56,7 +59,7 @@ def removed_votes(  # type: ignore[no-untyped-def]
     space : the filled `WeightingSpace` of these votes, changed alike; None to go by the votes
     threshold : least value of a cell, positive
     maxima : how many are taken at most
-    last : whether of equal cells the last in θ-major order is taken
+    last : whether of cells that are equal in that, too, the last in θ-major order is taken
     x, y : float64 (n,), measured from the grid's origin
     cosine, sine : float64 (rows,)
     cells, count : int64 or float64 (≥ count, 3), the cells written so far and their number
@@ -65,9 +68,10 @@ def removed_votes(  # type: ignore[no-untyped-def]
     x, y = x.copy(), y.copy()
     left = len(x)
     for _ in range(maxima):
-        row, column, best = maximum(values, last)
+        _, _, best = maximum(values, last)
         if best < threshold or best == 0:
             break
+        row, column = least_scattered(values, best, last, x[:left], y[:left], cosine, sine, rho_min, rho_step)
         cells, count = written(cells, count, row, column, best)
         before = left
         left = _take_plots(
