@@ -326,9 +326,16 @@ class HoughApp(App[None]):
 
     # Help
 
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave F1 to a text, which explains itself by it: a question mark is text there."""
+        if action != "explain" or self.workspace is None:
+            return True
+        from hough_tui.ui.forms.controls import TextInput
+
+        return not isinstance(self.focused, TextInput)
+
     def action_explain(self) -> None:
-        """Explain the focused field; without one, or once more, tell what the focused view is for."""
-        from hough_tui.ui.forms.value_field import ValueField
+        """Tell what the focused view is for, and what the focused field is."""
         from hough_tui.ui.screens.explanation import ExplanationScreen
         from hough_tui.ui.screens.help import HelpScreen
 
@@ -337,12 +344,10 @@ class HoughApp(App[None]):
             return
         if isinstance(self.screen, ExplanationScreen):
             self.screen.dismiss(None)
-        elif self.focused is not None:
-            for node in self.focused.ancestors_with_self:
-                if isinstance(node, ValueField):
-                    node.action_explain()
-                    return
-        self.push_screen(HelpScreen(self._main.help_text(), list(self._main.active_bindings.values())))
+            screen: Screen[Any] = self._main
+        else:
+            screen = self.screen
+        self.push_screen(HelpScreen(self._main.help_text(), list(screen.active_bindings.values())))
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """Yield every action of the application and of the focused view for the command palette."""

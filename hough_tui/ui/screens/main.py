@@ -44,6 +44,8 @@ class ViewPane(TabPane):
 class MainScreen(Screen[None]):
     """The frame of the application; a view is mounted when its tab is first shown."""
 
+    AUTO_FOCUS = "ContentTabs"
+    """Not the first widget that could have the focus, which would be a tree that is not seen."""
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("f2", "tab('scenario')", "Scenario", id="tab.scenario", show=False),
         Binding("f3", "tab('initiator')", "Initiator", id="tab.initiator", show=False),
@@ -228,10 +230,13 @@ class MainScreen(Screen[None]):
         self.run_worker(self._choose(event.part, event.index))
 
     def help_text(self) -> str:
-        """Return what the view that is seen is for."""
+        """Return what the view that is seen is for, and in one line what the focused field is."""
         active = self.query_one(TabbedContent).active
         view = self._views.get(active)
-        return f"{TABS.get(active, '')}\n\n{getattr(view, 'HELP', '')}".strip()
+        parts = [TABS.get(active, ""), getattr(view, "HELP", "")]
+        if self.focused is not None:
+            parts += [node.in_short for node in self.focused.ancestors if hasattr(node, "in_short")][:1]
+        return "\n\n".join(part for part in parts if part)
 
     def stop_work(self) -> None:
         """Stop what runs in the background."""
