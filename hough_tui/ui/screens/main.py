@@ -9,10 +9,10 @@ from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Container, Horizontal
-from textual.screen import Screen
 from textual.widgets import TabbedContent, TabPane
 
 from hough_tui.ui.messages import SetShown
+from hough_tui.ui.screens.attentive import AttentiveScreen
 from hough_tui.ui.widgets.key_line import KeyLine
 from hough_tui.ui.widgets.status_line import StatusLine
 
@@ -41,7 +41,7 @@ class ViewPane(TabPane):
         return ""
 
 
-class MainScreen(Screen[None]):
+class MainScreen(AttentiveScreen):
     """The frame of the application; a view is mounted when its tab is first shown."""
 
     AUTO_FOCUS = "ContentTabs"

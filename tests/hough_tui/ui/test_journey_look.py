@@ -5,6 +5,7 @@ import pytest
 from textual.widgets import Static
 
 from algorithms.hough.inspection import columns_of, voters
+from hough_tui.ui.views.look import LookView
 from hough_tui.ui.widgets.heatmap import Heatmap
 from hough_tui.ui.widgets.plane import Plane
 from hough_tui.ui.widgets.track_grid import TrackGrid
@@ -17,6 +18,26 @@ async def look(user):
     await user.until(lambda: panel._seen)
     await user.settle()
     return panel
+
+
+def test_the_layout_follows_the_size_whoever_measures_the_screen_meanwhile(drive, monkeypatch):
+    show_set = LookView.show_set
+
+    def measure(view, given):
+        # What Textual does by itself at times, when it refreshes something between mounting and layout.
+        view.screen._compositor._full_map_invalidated = True
+        assert view.size
+        show_set(view, given)
+
+    monkeypatch.setattr(LookView, "show_set", measure)
+
+    async def journey(user):
+        panel = await look(user)
+        await user.until(lambda: panel.has_class("one-plane"))
+        await user.press("v")
+        await user.until(lambda: panel.has_class("one-accumulator"))
+
+    drive(journey, "course-report", size=(80, 24))
 
 
 def test_a_peak_is_explained_by_its_plots_and_its_neighbourhood(drive):
