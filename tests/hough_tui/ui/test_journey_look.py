@@ -139,8 +139,10 @@ def test_initiators_and_trials_are_gone_through(drive, size):
     drive(journey, "course-report", size=size)
 
 
-def test_two_initiators_stand_side_by_side_on_the_same_draw(drive):
+@pytest.mark.parametrize("size", [(200, 60), (160, 48)], ids=str)
+def test_two_initiators_stand_side_by_side_on_the_same_draw(drive, size):
     async def journey(user):
+        assert user.main.query_one("#tree-place").region.width > 20
         await look(user)
         await user.press("b")
         await user.sees("standard on two-crossing, trial 0", "sequential on two-crossing, trial 0")
@@ -154,4 +156,17 @@ def test_two_initiators_stand_side_by_side_on_the_same_draw(drive):
         await user.press("b")
         await user.until(lambda: len(user.view.query("LookPanel")) == 1)
 
-    drive(journey, "course-report", size=(200, 60))
+    drive(journey, "course-report", size=size)
+
+
+def test_without_room_for_two_it_is_said_how_much_they_need(drive):
+    async def journey(user):
+        await look(user)
+        await user.press("b")
+        assert "Two initiators side by side need 120 columns, and the view has 104: F8 hides the tree" in (
+            user.notes
+        )
+        await user.press("f8", "b")
+        await user.until(lambda: len(user.view.query("LookPanel")) == 2)
+
+    drive(journey, "course-report", size=(130, 40))
