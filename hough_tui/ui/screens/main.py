@@ -70,7 +70,7 @@ class MainScreen(AttentiveScreen):
                 for name, title in TABS.items():
                     yield ViewPane(title, id=name)
         yield StatusLine()
-        yield KeyLine(show_command_palette=True)
+        yield KeyLine(show_command_palette=False)
 
     def on_resize(self) -> None:
         """Take the tree out of a narrow screen."""
