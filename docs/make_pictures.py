@@ -174,7 +174,7 @@ async def taken(name: str, size: tuple[int, int]) -> str:
 PLACES = {
     "Everywhere": ("HoughApp", "MainScreen"),
     "The tree of the set": ("SetTree",),
-    "Forms": ("ModelForm", "ValueField", "NumberInput", "TextInput", "Flag"),
+    "Forms": ("ModelForm", "ValueField", "NumberInput", "TextInput", "Menu", "Flag"),
     "Tables in forms (targets, clutter)": ("ListTable", "CellTable"),
     "Scenario": ("ScenarioView",),
     "Initiator": ("InitiatorView",),
@@ -183,7 +183,7 @@ PLACES = {
     "Look: the accumulator": ("Heatmap",),
     "Look: the table of tracks": ("TrackGrid",),
     "Look: why this peak": ("WhyPeak",),
-    "Monte Carlo": ("MonteCarloView", "RunField"),
+    "Monte Carlo": ("MonteCarloView", "RunField", "ExperimentForm"),
     "Monte Carlo and Results: rates as table and chart": ("RatePanel", "RateGrid"),
     "The trials behind a row": ("TrialsScreen", "TrialList"),
     "Results": ("ResultsView", "RunList"),
@@ -196,28 +196,11 @@ OTHERS = "Dialogues"
 BEGIN, END = "<!-- keys: begin -->", "<!-- keys: end -->"
 
 
-def bindings() -> dict[str, list[Any]]:
-    """Return the bindings that each class of the application declares itself, by its name."""
-    import importlib
-    import inspect
-    import pkgutil
-
-    from textual.dom import DOMNode
-
-    import hough_tui.ui
-
-    found = {}
-    for module in pkgutil.walk_packages(hough_tui.ui.__path__, "hough_tui.ui."):
-        for name, kind in vars(importlib.import_module(module.name)).items():
-            own = inspect.isclass(kind) and issubclass(kind, DOMNode) and kind.__module__ == module.name
-            if own and kind.__dict__.get("BINDINGS"):
-                found[name] = list(kind.__dict__["BINDINGS"])
-    return found
-
-
 def key_tables() -> str:
     """Return the tables of all keys, as Markdown."""
-    known = bindings()
+    from hough_tui.ui.key_bindings import declared_bindings
+
+    known = declared_bindings()
     placed = {name for names in PLACES.values() for name in names}
     lines = []
     for title, names in (PLACES | {OTHERS: tuple(name for name in known if name not in placed)}).items():

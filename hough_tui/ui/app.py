@@ -27,8 +27,10 @@ from hough_tui.ui.messages import (
 )
 from hough_tui.ui.screens.main import MainScreen
 from hough_tui.ui.screens.question import Question, telling
+from hough_tui.ui.widgets.key_line import PALETTE
 
 if TYPE_CHECKING:
+    from algorithms.errors import RequestError
     from hough_tui.ui.autosave import Unsaved
     from hough_tui.ui.workspace import Workspace
     from scenarios.model import ScenarioSet
@@ -52,12 +54,14 @@ class HoughApp(App[None]):
         Binding("ctrl+z", "undo", "Undo", id="app.undo", priority=True),
         Binding("ctrl+y", "redo", "Redo", id="app.redo", priority=True, show=False),
         Binding("f5", "run", "Run", id="app.run", priority=True),
+        Binding("ctrl+p", "command_palette", "Actions", id=PALETTE, priority=True, show=False, system=True),
     ]
 
     def __init__(self, set_name: str | None, config: Config) -> None:
         super().__init__()
         self._set_name, self._config = set_name, config
         self.workspace: Workspace | None = None
+        self.wrong_setting: RequestError | None = None
         self._unanswered: Unsaved | None = None
         self._is_warming = False
         self._main = MainScreen()
@@ -92,6 +96,14 @@ class HoughApp(App[None]):
         from scenarios.bundled import bundled_paths
         from scenarios.files import bundled_sets, load_set, locate
 
+        if self._config.keys:
+            from hough_tui.ui.key_bindings import require_known
+
+            try:
+                require_known(self._config.places)
+            except RequestError as error:
+                self.call_from_thread(self._refuse_settings, error)
+                return
         if name is None:
             self.call_from_thread(self._welcome, bundled_sets(), unsaved_work())
             return
@@ -103,6 +115,10 @@ class HoughApp(App[None]):
         own = None if path in bundled_paths().values() else path
         kept = read_aside(aside_file(given.name, own))
         self.call_from_thread(self._opened, given, own, kept if kept and kept.given != given else None)
+
+    def _refuse_settings(self, error: RequestError) -> None:
+        self.wrong_setting = error
+        self.exit()
 
     def _welcome(self, bundled: list[Any], kept: list[Unsaved]) -> None:
         from hough_tui.ui.screens.welcome import Welcome
@@ -326,9 +342,16 @@ class HoughApp(App[None]):
 
     # Help
 
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave F1 to a text, which explains itself by it: a question mark is text there."""
+        if action != "explain" or self.workspace is None:
+            return True
+        from hough_tui.ui.forms.controls import TextInput
+
+        return not isinstance(self.focused, TextInput)
+
     def action_explain(self) -> None:
-        """Explain the focused field; without one, or once more, tell what the focused view is for."""
-        from hough_tui.ui.forms.value_field import ValueField
+        """Tell what the focused view is for, and what the focused field is."""
         from hough_tui.ui.screens.explanation import ExplanationScreen
         from hough_tui.ui.screens.help import HelpScreen
 
@@ -337,12 +360,10 @@ class HoughApp(App[None]):
             return
         if isinstance(self.screen, ExplanationScreen):
             self.screen.dismiss(None)
-        elif self.focused is not None:
-            for node in self.focused.ancestors_with_self:
-                if isinstance(node, ValueField):
-                    node.action_explain()
-                    return
-        self.push_screen(HelpScreen(self._main.help_text(), list(self._main.active_bindings.values())))
+            screen: Screen[Any] = self._main
+        else:
+            screen = self.screen
+        self.push_screen(HelpScreen(self._main.help_text(), list(screen.active_bindings.values())))
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """Yield every action of the application and of the focused view for the command palette."""
@@ -431,4 +452,6 @@ def run(set_name: str | None) -> int:
     interpreter.prepare()
     app = HoughApp(set_name, read_config())
     app.run()
+    if app.wrong_setting is not None:
+        raise app.wrong_setting
     return app.return_code or 0

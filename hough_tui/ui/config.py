@@ -19,10 +19,12 @@ class Config:
     ----------
     theme : a theme of Textual; None: the default one
     keys : the keys of bindings, by the binding's id
+    places : where in the file each of these ids stands
     """
 
     theme: str | None = None
     keys: dict[str, str] = field(default_factory=dict)
+    places: dict[str, str] = field(default_factory=dict, compare=False)
 
 
 def config_file() -> Path:
@@ -32,6 +34,8 @@ def config_file() -> Path:
 
 def read_config() -> Config:
     """Return the settings; the defaults where there is no file.
+
+    Whether there are bindings of these ids is not looked at: all modules would have to be imported.
 
     Raises
     ------
@@ -57,4 +61,5 @@ def read_config() -> Config:
         raise RequestError(f"{document.where(('theme',))}: theme must be the name of a theme")
     if not isinstance(keys, dict) or not all(isinstance(value, str) for value in keys.values()):
         raise RequestError(f"{document.where(('keys',))}: keys must be a mapping of binding ids to keys")
-    return Config(theme, keys)
+    places = {name: document.where(("keys", name), key=True) for name in keys}
+    return Config(theme, keys, places)

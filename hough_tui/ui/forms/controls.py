@@ -47,7 +47,9 @@ class NumberInput(Input):
 class TextInput(Input):
     """A line of text, in which a question mark is text too."""
 
-    BINDINGS = [Binding("ctrl+question_mark", "explain", "Explain", show=False, id="field.explain-text")]
+    BINDINGS = [
+        Binding("f1,ctrl+question_mark", "explain", "Explain", key_display="F1", id="field.explain-text")
+    ]
 
     def action_explain(self) -> None:
         """Ask what the field is."""

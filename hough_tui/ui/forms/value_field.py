@@ -128,6 +128,11 @@ class ValueField(Widget):
         meaning = self._meaning
         return meaning.message if isinstance(meaning, Unreadable) else self._problem
 
+    @property
+    def in_short(self) -> str:
+        """What the field is, in one sentence."""
+        return f"{self.field.title}: {self.field.help}. ? tells more."
+
     def compose(self) -> ComposeResult:
         self._label.tooltip = Content(self.field.help)
         yield self._label

@@ -56,7 +56,7 @@ class HelpScreen(ModalScreen[None]):
         for active in self._listed:
             binding = active.binding
             name = binding.id or binding.action
-            if binding.description and not binding.system:
+            if binding.description and (binding.id or not binding.system):
                 keys.setdefault(name, []).append(self.app.get_key_display(binding))
                 shown[name] = binding
         for name, binding in shown.items():

@@ -9,10 +9,10 @@ from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Container, Horizontal
-from textual.screen import Screen
 from textual.widgets import TabbedContent, TabPane
 
 from hough_tui.ui.messages import SetShown
+from hough_tui.ui.screens.attentive import AttentiveScreen
 from hough_tui.ui.widgets.key_line import KeyLine
 from hough_tui.ui.widgets.status_line import StatusLine
 
@@ -41,9 +41,11 @@ class ViewPane(TabPane):
         return ""
 
 
-class MainScreen(Screen[None]):
+class MainScreen(AttentiveScreen):
     """The frame of the application; a view is mounted when its tab is first shown."""
 
+    AUTO_FOCUS = "ContentTabs"
+    """Not the first widget that could have the focus, which would be a tree that is not seen."""
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("f2", "tab('scenario')", "Scenario", id="tab.scenario", show=False),
         Binding("f3", "tab('initiator')", "Initiator", id="tab.initiator", show=False),
@@ -68,7 +70,7 @@ class MainScreen(Screen[None]):
                 for name, title in TABS.items():
                     yield ViewPane(title, id=name)
         yield StatusLine()
-        yield KeyLine(show_command_palette=True)
+        yield KeyLine(show_command_palette=False)
 
     def on_resize(self) -> None:
         """Take the tree out of a narrow screen."""
@@ -228,10 +230,13 @@ class MainScreen(Screen[None]):
         self.run_worker(self._choose(event.part, event.index))
 
     def help_text(self) -> str:
-        """Return what the view that is seen is for."""
+        """Return what the view that is seen is for, and in one line what the focused field is."""
         active = self.query_one(TabbedContent).active
         view = self._views.get(active)
-        return f"{TABS.get(active, '')}\n\n{getattr(view, 'HELP', '')}".strip()
+        parts = [TABS.get(active, ""), getattr(view, "HELP", "")]
+        if self.focused is not None:
+            parts += [node.in_short for node in self.focused.ancestors if hasattr(node, "in_short")][:1]
+        return "\n\n".join(part for part in parts if part)
 
     def stop_work(self) -> None:
         """Stop what runs in the background."""

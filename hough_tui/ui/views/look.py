@@ -24,7 +24,11 @@ if TYPE_CHECKING:
 DEBOUNCE = 0.03
 """Seconds without a further change before a trial is worked out anew."""
 
-WIDE, VERY_WIDE = 88, 150
+WIDE = 88
+"""Columns from which the parts of a panel stand side by side."""
+
+DOUBLE = 120
+"""Columns from which two panels stand side by side."""
 
 
 class LookView(Widget):
@@ -124,8 +128,12 @@ class LookView(Widget):
         if not self._is_double and (self._given is None or len(self._given.initiators) < 2):
             self.notify("The set has one initiator only", markup=False)
             return
-        if not self._is_double and self.size.width < VERY_WIDE:
-            self.notify(f"Two initiators side by side need {VERY_WIDE} columns", markup=False)
+        if not self._is_double and self.size.width < DOUBLE:
+            self.notify(
+                f"Two initiators side by side need {DOUBLE} columns, and the view has {self.size.width}"
+                + (": F8 hides the tree" if self.app.size.width >= DOUBLE else ""),
+                markup=False,
+            )
             return
         self._is_double = not self._is_double
         if self._is_double:

@@ -222,7 +222,7 @@ class MonteCarloView(Widget):
 
     def _start(self, live: LiveRun) -> None:
         self._live, self._pace = live, Pace(live.job.plan.trials)
-        is_focused = self.query_one(Hint).has_focus
+        is_focused = bool(self.query("Hint:focus, ExperimentForm:focus-within"))
         self.set_classes("-filled")  # and no form any more: whoever runs wants to see the rates
         self.query_one(RatePanel).show(live)
         if is_focused:

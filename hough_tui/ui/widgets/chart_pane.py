@@ -82,11 +82,9 @@ class ChartPane(Vertical):
             self._choose(BY_TRIAL)
 
     def draw(self) -> None:
-        """Draw, unless nobody sees it."""
+        """Draw; the plot waits with it until somebody sees it."""
         plot, index = self.query_one(RatePlot), self._index
         self._drawn = self._wanted()
-        if not self.display:
-            return
         if self._run is None or index is None or index >= len(self._rows):
             plot.show(None)
         elif self.metric == BY_TRIAL:

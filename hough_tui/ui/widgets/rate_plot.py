@@ -34,14 +34,18 @@ class RatePlot(PlotextPlot, can_focus=True):
         super().__init__(id=id)
         self._drawing: Drawing | None = None
         self._drawn: tuple[Strip, ...] = ()
+        self._drawn_of: tuple[Drawing, int, int] | None = None
         self._is_busy = False
         self._is_stale = False
 
     def show(self, drawing: Drawing | None) -> None:
-        """Show a chart, when it is drawn; None for nothing."""
+        """Show a chart, when it is drawn; None for nothing.
+
+        While nobody sees the widget nothing is drawn: that comes when it has a size.
+        """
         self._drawing = drawing
         if drawing is None:
-            self._drawn = ()
+            self._drawn, self._drawn_of = (), None
             self.refresh()
         else:
             self._redraw()
@@ -71,10 +75,13 @@ class RatePlot(PlotextPlot, can_focus=True):
         width, height = self.content_size
         if self._drawing is None or width < 10 or height < 5:
             return
+        wanted = self._drawing, width, height
+        if wanted == self._drawn_of:
+            return
         # One at a time: what is asked for meanwhile is drawn once, after it.
         self._is_stale = self._is_busy
         if not self._is_busy:
-            self._is_busy = True
+            self._is_busy, self._drawn_of = True, wanted
             self._draw(self._drawing, width, height, self.app.console)
 
     @work(thread=True, exit_on_error=False, group="chart")

@@ -14,7 +14,7 @@ def test_an_experiment_is_made_edited_run_and_saved(drive, home):
         chosen = user.view.query_one("RunForm Select", Select)
         assert user.form.model.name == chosen.value == "tables"
         # A copy of it is shown at once.
-        await user.click("#copy")
+        await user.click("ExperimentForm #copy")
         await user.until(lambda: chosen.value == "tables-2" and user.form.model.name == "tables-2")
         at = len(user.app.workspace.given.experiments) - 1
         # While its name is typed it stays the one that is shown.
@@ -30,7 +30,13 @@ def test_an_experiment_is_made_edited_run_and_saved(drive, home):
         await user.fill((*BASE, at, "sweep"), "scans: 5, 6")
         await user.fill((*BASE, at, "trials"), "20")
         await user.until(lambda: user.value(*BASE, at, "trials") == 20)
-        # F1 explains the field, and once more the view.
+        # F1 tells of the view and of the field; in a text, which takes ? as it is, first of the field.
+        await user.press("f1")
+        await user.screen("HelpScreen")
+        await user.sees("Runs an experiment of the set", "Trials: ", "? tells more")
+        await user.press("escape")
+        user.form.focus_field((*BASE, at, "sweep"))
+        await user.settle()
         await user.press("f1")
         await user.screen("ExplanationScreen")
         await user.press("f1")
@@ -46,9 +52,10 @@ def test_an_experiment_is_made_edited_run_and_saved(drive, home):
         await user.type("own.yaml")
         await user.press("enter")
         await user.until(lambda: (home / "work" / "own.yaml").exists())
+        await user.screen("MainScreen")
         # Removed, and brought back.
         await user.press("f9")
-        await user.click("#remove")
+        await user.click("ExperimentForm #remove")
         await user.until(lambda: len(user.app.workspace.given.experiments) == at)
         await user.press("ctrl+z")
         await user.until(lambda: len(user.app.workspace.given.experiments) == at + 1)

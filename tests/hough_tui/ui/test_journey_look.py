@@ -5,6 +5,7 @@ import pytest
 from textual.widgets import Static
 
 from algorithms.hough.inspection import columns_of, voters
+from hough_tui.ui.views.look import LookView
 from hough_tui.ui.widgets.heatmap import Heatmap
 from hough_tui.ui.widgets.plane import Plane
 from hough_tui.ui.widgets.track_grid import TrackGrid
@@ -17,6 +18,26 @@ async def look(user):
     await user.until(lambda: panel._seen)
     await user.settle()
     return panel
+
+
+def test_the_layout_follows_the_size_whoever_measures_the_screen_meanwhile(drive, monkeypatch):
+    show_set = LookView.show_set
+
+    def measure(view, given):
+        # What Textual does by itself at times, when it refreshes something between mounting and layout.
+        view.screen._compositor._full_map_invalidated = True
+        assert view.size
+        show_set(view, given)
+
+    monkeypatch.setattr(LookView, "show_set", measure)
+
+    async def journey(user):
+        panel = await look(user)
+        await user.until(lambda: panel.has_class("one-plane"))
+        await user.press("v")
+        await user.until(lambda: panel.has_class("one-accumulator"))
+
+    drive(journey, "course-report", size=(80, 24))
 
 
 def test_a_peak_is_explained_by_its_plots_and_its_neighbourhood(drive):
@@ -118,8 +139,10 @@ def test_initiators_and_trials_are_gone_through(drive, size):
     drive(journey, "course-report", size=size)
 
 
-def test_two_initiators_stand_side_by_side_on_the_same_draw(drive):
+@pytest.mark.parametrize("size", [(200, 60), (160, 48)], ids=str)
+def test_two_initiators_stand_side_by_side_on_the_same_draw(drive, size):
     async def journey(user):
+        assert user.main.query_one("#tree-place").region.width > 20
         await look(user)
         await user.press("b")
         await user.sees("standard on two-crossing, trial 0", "sequential on two-crossing, trial 0")
@@ -133,4 +156,17 @@ def test_two_initiators_stand_side_by_side_on_the_same_draw(drive):
         await user.press("b")
         await user.until(lambda: len(user.view.query("LookPanel")) == 1)
 
-    drive(journey, "course-report", size=(200, 60))
+    drive(journey, "course-report", size=size)
+
+
+def test_without_room_for_two_it_is_said_how_much_they_need(drive):
+    async def journey(user):
+        await look(user)
+        await user.press("b")
+        assert "Two initiators side by side need 120 columns, and the view has 104: F8 hides the tree" in (
+            user.notes
+        )
+        await user.press("f8", "b")
+        await user.until(lambda: len(user.view.query("LookPanel")) == 2)
+
+    drive(journey, "course-report", size=(130, 40))

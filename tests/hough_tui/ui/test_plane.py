@@ -385,3 +385,21 @@ def test_bindings_can_be_remapped_and_explain_themselves():
         assert plane.cursor == 0
 
     play(scene(), journey)
+
+
+def test_a_plane_that_changes_unseen_is_up_to_date_when_it_is_seen_again():
+    def seen(app):
+        return "\n".join(line.text for line in app.screen._compositor.render_strips())
+
+    async def journey(app, plane, pilot):
+        before = seen(app)
+        plane.display = False
+        await pilot.pause()
+        plane.show(sparse((10.0, 10.0), (20.0, 30.0)))
+        await pilot.pause()
+        plane.display = True
+        await pilot.pause()
+        assert seen(app) != before
+        assert "2 plots" in seen(app)
+
+    play(scene(), journey)

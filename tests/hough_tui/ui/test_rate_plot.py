@@ -13,6 +13,7 @@ from textual.widgets import Select
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import plan_run
 from hough_tui.reports.charts import ESCAPES
+from hough_tui.ui.screens.attentive import AttentiveScreen
 from hough_tui.ui.views.shown_run import LiveRun
 from hough_tui.ui.widgets.chart_pane import BY_TRIAL, ChartPane
 from hough_tui.ui.widgets.rate_plot import RatePlot
@@ -31,6 +32,9 @@ def live():
 
 def mounted(widget, journey, size=(100, 30)):
     class Host(App[None]):
+        def get_default_screen(self):
+            return AttentiveScreen()
+
         def compose(self):
             yield widget
 
@@ -166,3 +170,36 @@ def test_the_global_figure_of_plotext_stays_untouched():
     trial_chart("a row", np.arange(9), np.full(9, 0.5), 60, 15)
     assert plotext.build() == before
     plotext.clear_figure()
+
+
+def test_a_chart_that_changes_unseen_is_up_to_date_when_it_is_seen_again(live):
+    pane = ChartPane()
+
+    def seen(user):
+        return "\n".join(line.text for line in user.app.screen._compositor.render_strips())
+
+    async def journey(user):
+        pane.fill(live, live.rows, 0)
+        await user.until(lambda: "success %" in seen(user))
+        for turn, wanted in ((1, "control %"), (-1, "success %")):
+            pane.display = False
+            await user.pilot.pause()
+            pane.next_metric(turn)
+            await user.pilot.pause(0.05)
+            pane.display = True
+            await user.until(lambda wanted=wanted: wanted in seen(user).splitlines()[1])
+
+    mounted(pane, journey)
+
+
+def test_what_is_drawn_already_is_not_drawn_again():
+    plot, drawn = RatePlot(), []
+
+    async def journey(user):
+        plot.show(lambda width, height: drawn.append((width, height)) or "chart")
+        await user.until(lambda: drawn and not plot._is_busy)
+        plot.on_resize()
+        await user.pilot.pause(0.05)
+        assert len(drawn) == 1
+
+    mounted(plot, journey)
