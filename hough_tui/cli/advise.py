@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -51,7 +50,7 @@ def advise(
     ] = None,
     seed: Annotated[int, typer.Option(min=0, max=2**64 - 1, help="Draws of --check.")] = 1,
     apply: Annotated[
-        Path | None, typer.Option(metavar="SET.yaml", help="Write it into the initiators of this set.")
+        str | None, typer.Option(metavar="SET.yaml", help="Write it into the initiators of this set.")
     ] = None,
     initiator: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Entry that --apply changes; may be repeated.")
@@ -96,7 +95,7 @@ def advise(
         from hough_tui.experiments.adoption import adopt_in_file
 
         adoption = adopt_in_file(apply, advice, initiator or ())
-        told["applied"] = {"set": str(apply), "initiators": adoption.names}
+        told["applied"] = {"set": apply, "initiators": adoption.names}
         tell(f"written to {apply}: {', '.join(adoption.names)}")
         for note in adoption.notes:
             tell(note)

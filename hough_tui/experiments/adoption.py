@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from algorithms.errors import RequestError
@@ -12,7 +11,7 @@ from algorithms.initiators.accumulating import AccumulatingParameters
 from algorithms.parameters import unknown
 from algorithms.quantisation.advisor import Advice
 from scenarios.bundled import bundled_paths
-from scenarios.files import LARGEST_FILE, parse_set, read_text, save_set, set_data
+from scenarios.files import load_set, locate, save_set, set_data
 from scenarios.model import ScenarioSet
 
 
@@ -94,7 +93,7 @@ def _write(entry: dict[str, Any], advice: Advice) -> None:
             entry[key] = value
 
 
-def adopt_in_file(path: Path, advice: Advice, names: Sequence[str] = ()) -> Adoption:
+def adopt_in_file(name: str, advice: Advice, names: Sequence[str] = ()) -> Adoption:
     """Write a recommendation into a set's file; comments, order and layout survive.
 
     Raises
@@ -102,11 +101,12 @@ def adopt_in_file(path: Path, advice: Advice, names: Sequence[str] = ()) -> Adop
     RequestError
         Where the file is no set that can be written, or an entry is not fit for it.
     """
-    if not path.exists() and str(path) in bundled_paths():
+    path = locate(name)
+    if path in bundled_paths().values():
         raise RequestError(
-            f"--apply {path}: a bundled set is not written to; keep a copy first: hough-tui sets {path} > "
-            f"{path}.yaml"
+            f"--apply {name}: a bundled set is not written to; write into a copy: hough-tui sets {path.stem} > "
+            "mine.yaml"
         )
-    adoption = adopt(parse_set(read_text(path, LARGEST_FILE), str(path)), advice, names)
+    adoption = adopt(load_set(path), advice, names)
     save_set(adoption.changed, path)
     return adoption
