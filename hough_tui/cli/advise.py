@@ -16,7 +16,7 @@ from hough_tui.cli.process import announce_compilation, refuse, reported, tell
 def advise(
     name: Annotated[
         str | None,
-        typer.Argument(metavar="[SET[:SCENARIO]]", help="The scenario that it is for; or give options."),
+        typer.Argument(metavar="SET[:SCENARIO]", help="The scenario that it is for; or give options."),
     ] = None,
     assignments: SetOption = None,
     sigma: Annotated[float | None, typer.Option(help="Standard deviation of the noise on x and y.")] = None,
@@ -33,7 +33,8 @@ def advise(
     ] = None,
     unit: Annotated[str | None, typer.Option(help="Unit of all lengths: km, m or nmi.")] = None,
     false_cells: Annotated[
-        float, typer.Option(metavar="BOUND", help="Expected number of cells that clutter may lift a batch.")
+        float,
+        typer.Option(metavar="BOUND", help="How many cells a batch clutter alone may lift, on the mean."),
     ] = 1.0,
     kappa: Annotated[
         float, typer.Option(help="How far a line's extent may spread its votes, in σ of the noise.")

@@ -104,8 +104,8 @@ def adopt_in_file(name: str, advice: Advice, names: Sequence[str] = ()) -> Adopt
     path = locate(name)
     if path in bundled_paths().values():
         raise RequestError(
-            f"--apply {name}: a bundled set is not written to; write into a copy: hough-tui sets {path.stem} > "
-            "mine.yaml"
+            f"--apply {name}: a bundled set is not written to; write into a copy: hough-tui sets {path.stem} "
+            "> mine.yaml"
         )
     adoption = adopt(load_set(path), advice, names)
     save_set(adoption.changed, path)

@@ -86,7 +86,7 @@ def test_reasons_tell_noise_extent_peak_and_window(advised):
         f"Δθ = {told['theta_step_deg']:.3g}°",
         f"±{told['suppress_theta']} rows",
         f"±{told['suppress_rho']} in an upright window",
-        f"to {told['votes']} votes, where 1 are allowed",
+        f"to {told['votes']} votes, within the bound of 1",
         "held apart from",
     ):
         assert word in text
