@@ -8,11 +8,14 @@ from typing import Any
 
 from algorithms.errors import RequestError
 from algorithms.initiators.accumulating import AccumulatingParameters
-from algorithms.parameters import unknown
+from algorithms.parameters import Parameters, unknown
 from algorithms.quantisation.advisor import Advice
 from scenarios.bundled import bundled_paths
 from scenarios.files import load_set, locate, save_set, set_data
 from scenarios.model import ScenarioSet
+
+LEAST_VOTES = "least_votes"
+"""Where this is declared, the threshold is on weighted votes, and plain votes must be more than these."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +39,8 @@ def adopt(given: ScenarioSet, advice: Advice, names: Sequence[str] = ()) -> Adop
 
     Rows, Δρ and votes are written; where the columns begin and how many there are follows from the region
     again, since those of another Δρ would not cover it. A suppression window is written where the entry has
-    one, `fraction` goes because `votes` replaces it.
+    one, `fraction` goes because `votes` replaces it. Where votes are weighted their threshold stays, and the
+    least plain votes of a cell are written.
 
     Parameters
     ----------
@@ -68,7 +72,7 @@ def adopt(given: ScenarioSet, advice: Advice, names: Sequence[str] = ()) -> Adop
     data = set_data(given)
     for entry in data["initiators"]:
         if entry["name"] in chosen:
-            _write(entry, advice)
+            _write(entry, advice, given.entry(entry["name"]).algorithm.parameters)
     notes = [
         f"experiment {experiment.name} sweeps {key}, over what is recommended"
         for experiment in given.experiments
@@ -78,15 +82,18 @@ def adopt(given: ScenarioSet, advice: Advice, names: Sequence[str] = ()) -> Adop
     return Adoption(ScenarioSet.model_validate(data), chosen, tuple(notes))
 
 
-def _write(entry: dict[str, Any], advice: Advice) -> None:
+def _write(entry: dict[str, Any], advice: Advice, declared: type[Parameters]) -> None:
     grid = {
         key: value
         for key, value in (entry.get("grid") or {}).items()
         if key in ("theta_bins", "theta_offset")
     }
     entry["grid"] = {**grid, "theta_bins": advice.grid.theta_bins, "rho_step": advice.grid.rho_step}
-    entry.pop("fraction", None)
-    entry["votes"] = advice.votes
+    if LEAST_VOTES in declared.model_fields:
+        entry[LEAST_VOTES] = advice.votes - 1
+    else:
+        entry.pop("fraction", None)
+        entry["votes"] = advice.votes
     window = advice.prediction.window
     for key, value in (("suppress_theta", window.theta), ("suppress_rho", window.rho_upright)):
         if key in entry:

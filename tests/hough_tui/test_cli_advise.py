@@ -176,6 +176,8 @@ initiators:
     initiator: sequential
     suppress_rho: 2
     maxima: 2
+  - name: weighted
+    fraction: 0.5   # of weighted votes
   - name: modified
     speed_min: 0.1
     speed_max: 0.5
@@ -196,7 +198,7 @@ def mine(tmp_path):
 
 def test_a_recommendation_is_written_into_a_set(advised, mine):
     told = advised(mine, "--apply", mine)
-    assert told["applied"] == {"set": str(mine), "initiators": ["standard", "mine"]}
+    assert told["applied"] == {"set": str(mine), "initiators": ["standard", "mine", "weighted"]}
     text = mine.read_text()
     for comment in ("# My own set.", "interval: 4   # s", "  # The first one.", "# as ever"):
         assert comment in text
@@ -209,16 +211,17 @@ def test_a_recommendation_is_written_into_a_set(advised, mine):
         resolved = entry.parameters.resolved(after.scenarios[0].context)
         grid = resolved.grid.grid(after.scenarios[0].context)
         assert (grid.rho_bins, grid.rho_min) == (told["rho_bins"], told["rho_min"])
+    # A threshold on weighted votes stays what it is.
+    weighted = after.entry("weighted")
+    assert (weighted.grid.rho_step, weighted.votes, weighted.fraction) == (told["rho_step"], None, 0.5)
+    assert weighted.least_votes == told["votes"] - 1
     assert "fraction" not in after.entry("standard").model_fields_set
     # A window is changed where the entry has one.
     assert after.entry("mine").suppress_rho == told["suppress_rho"]
     assert "suppress_theta" not in after.entry("mine").model_fields_set
-    before = [line for line in MINE.splitlines() if not re.search("fraction|grid|suppress", line)]
-    assert [
-        line
-        for line in text.splitlines()
-        if not re.search("grid|theta_bins|rho_step|suppress|votes: [^\\[]", line)
-    ] == before
+    changed = re.compile(r"fraction: 0\.9|grid|theta_bins|rho_step|suppress|votes: \d")
+    kept = [[line for line in part.splitlines() if not changed.search(line)] for part in (MINE, text)]
+    assert kept[0] == kept[1]
 
 
 def test_one_entry_alone_is_written(cli, mine):
