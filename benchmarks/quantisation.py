@@ -30,7 +30,7 @@ Answer = TypeVar("Answer")
 
 QUICK = "--quick" in sys.argv
 TRIALS = 400 if QUICK else 6_000
-FRESH_TRIALS = 2_000 if QUICK else 30_000
+FRESH_TRIALS = 2_000 if QUICK else 60_000
 SEED, FRESH_SEED = 1, 2
 WORKERS = 2
 
@@ -231,7 +231,7 @@ def picks() -> None:
         ):
             print(
                 f"    {name:9} {grid.theta_bins:4} rows, Δρ {grid.rho_step:g}, {votes} votes: "
-                f"P_D {rate:.4f}, {false:.2f} false cells"
+                f"P_D {rate:.4f}, {false:.3f} false cells"
             )
         behind = rates[1] - rates[0]
         print(f"    behind by {behind:.4f} (bound 0.01: {verdict(behind, 0.01)})")
