@@ -19,7 +19,7 @@ DOTS, MEAN = 67, 208
 
 
 def trial_chart(
-    called: str, numbers: NDArray[np.int64], ratio: NDArray[np.float64], width: int, height: int
+    called: str, numbers: NDArray[np.int32], ratio: NDArray[np.float64], width: int, height: int
 ) -> str:
     """Return a chart of a ratio in per cent against the number of the trial, and its mean so far.
 
