@@ -16,7 +16,8 @@ from algorithms.scoring import score
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import plan_run
 from scenarios.files import load_set
-from scenarios.simulate import World, draw, truth
+from scenarios.simulate import draw, truth
+from scenarios.world import World
 
 TRIALS = 200
 

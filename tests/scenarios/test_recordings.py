@@ -13,7 +13,8 @@ from algorithms.errors import RequestError
 from algorithms.plots import PlotChunk
 from scenarios.model import Scenario
 from scenarios.recordings import BLOCK, Recording, parse_plots, read_plots, write_assigned, write_plots
-from scenarios.simulate import Draw, World, draw
+from scenarios.simulate import Draw, draw
+from scenarios.world import World
 
 FLIGHTS = Path(__file__).parents[2].parent / "shared" / "data" / "flights_paris_4s.csv"
 

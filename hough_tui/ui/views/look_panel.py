@@ -233,7 +233,7 @@ def plane_scene(seen: TrialLook) -> PlaneScene:
     return PlaneScene(
         position,
         picture.plots.scan,
-        picture.scenario.region.box,
+        picture.scenario.box.plane,
         picture.scenario.unit.value,
         picture.origin,
         picture.paths,
