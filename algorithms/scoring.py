@@ -212,7 +212,7 @@ def score(tracks: TrackChunk, truth: Truth, plot_offsets: NDArray[np.int64], cri
         shared = _shared(tracks.plots, tracks.offsets, plot_offsets, truth.origin, truth.targets)
     else:
         shared = np.zeros((0, 0), np.int64)
-    columns = _score(
+    found, false, duplicates, state, theta_error, rho_error = _score(
         tracks.offsets, tracks.theta, tracks.rho, tracks.score, shared, truth.theta, truth.rho, truth.middle,
         np.nan if criterion.rho is None else criterion.rho,
         np.nan if criterion.theta is None else criterion.theta,
@@ -220,6 +220,5 @@ def score(tracks: TrackChunk, truth: Truth, plot_offsets: NDArray[np.int64], cri
     )  # fmt: skip
     mixed = np.full(len(tracks.counts), -1, np.int64)
     if tracks.plots is not None and tracks.plots.shape[1] > 0:
-        state = columns[3]
         mixed = _mixed(tracks.plots, state, tracks.offsets, plot_offsets, truth.origin)
-    return Scores(*columns, mixed)
+    return Scores(found, false, duplicates, state, theta_error, rho_error, mixed)
