@@ -251,6 +251,8 @@ def _notes(entry: InitiatorEntry, parameters: AccumulatingParameters, question: 
     if question.noise == 0.0:
         said.append("Without noise all votes of a line fall on one ρ in its own row.")
     if parameters.maxima is not None:
-        many = "one, the greatest, is" if parameters.maxima == 1 else f"{parameters.maxima}, the greatest, are"
+        many = (
+            "one, the greatest, is" if parameters.maxima == 1 else f"{parameters.maxima}, the greatest, are"
+        )
         said.append(f"Of the cells with enough votes {many} taken at most.")
     return said

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.style import Style
 from textual.binding import Binding
+from textual.message import Message
 
 from hough_tui.reports.numerals import percent, significant
 from hough_tui.ui.drawing.axes import Axis, Frame, foot
-from hough_tui.ui.drawing.braille import ACROSS, Canvas
+from hough_tui.ui.drawing.braille import ACROSS, DOWN, Canvas
 from hough_tui.ui.drawing.palette import Palette, ink
 from hough_tui.ui.drawing.shortening import Part, fitted
 from hough_tui.ui.drawing.viewport import Limits, Viewport
@@ -41,6 +42,9 @@ class PredictionDensity(Chart):
         Binding("N", "next_target(-1)", "Previous target", show=False, id="prediction.previous-target"),
     ]
 
+    class TargetChosen(Message):
+        """Another target is shown."""
+
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self._pictures: tuple[VotePicture, ...] = ()
@@ -62,6 +66,7 @@ class PredictionDensity(Chart):
         if self._pictures:
             self._target = (self._target + step) % len(self._pictures)
             self.changed()
+            self.post_message(self.TargetChosen())
 
     # What a chart asks; this one is always seen as a whole.
 
@@ -96,7 +101,7 @@ class PredictionDensity(Chart):
         shown = self.shown
         if shown is None:
             return Drawn(Canvas(viewport).strips(styles(colours)), None, foot([], [], width))
-        line = fitted(legend(shown, self._unit, len(self._pictures)), width)
+        line = fitted(legend(shown, self._unit, self._target, len(self._pictures)), width)
         words = foot([(line, ink(colours.muted))], [], width)
         return Drawn(painted(shown, viewport).strips(styles(colours)), None, words)
 
@@ -122,7 +127,7 @@ def painted(shown: VotePicture, viewport: Viewport) -> Canvas:
         edges = [shown.first + column * shown.step for column in (*columns, columns.stop)]
         upright = [np.array([(edge, 0.0), (edge, 1.0)]) for edge in edges]
         canvas.lines(upright, [EDGE] * len(upright), DASH)
-    canvas.lines([shown.curve], [CURVE])
+    canvas.lines([_seen_curve(shown, viewport)], [CURVE])
     if shown.home >= 0:
         canvas.lines(*_filling(shown, viewport))
         for column in columns:
@@ -138,6 +143,17 @@ def seen_columns(shown: VotePicture, viewport: Viewport) -> range:
     return range(min(max(0, first), shown.bins), min(max(0, last), shown.bins))
 
 
+def _dot(viewport: Viewport) -> float:
+    """Return the height of a dot: what is less is not seen."""
+    return abs(viewport.limits.top - viewport.limits.bottom) / (DOWN * viewport.height)
+
+
+def _seen_curve(shown: VotePicture, viewport: Viewport) -> np.ndarray:
+    """Return the curve where it rises by a dot, with the points beside: a jump has its edge."""
+    rises = np.pad(shown.curve[:, 1] >= _dot(viewport), 1)
+    return np.where((rises[:-2] | rises[1:-1] | rises[2:])[:, None], shown.curve, np.nan)
+
+
 def _filling(shown: VotePicture, viewport: Viewport) -> tuple[list[np.ndarray], list[int]]:
     """Return an upright line up to the curve at each column of dots within the home cell."""
     begin = shown.first + shown.home * shown.step
@@ -145,8 +161,7 @@ def _filling(shown: VotePicture, viewport: Viewport) -> tuple[list[np.ndarray], 
     rho = np.asarray(viewport.x((np.arange(dots) + 0.5) / ACROSS))
     rho = rho[(rho >= begin) & (rho < begin + shown.step)]
     heights = np.interp(rho, shown.curve[:, 0], shown.curve[:, 1], left=0.0, right=0.0)
-    # The lowest row of dots lies above the rule: what would be less than a dot is nothing.
-    least = viewport.limits.top / (4 * viewport.height)
+    least = _dot(viewport)
     lines = [
         np.array([(x, 0.5 * least), (x, height)])
         for x, height in zip(rho.tolist(), heights.tolist(), strict=True)
@@ -163,20 +178,20 @@ def _write_share(canvas: Canvas, shown: VotePicture, column: int, cells: float) 
     middle = float(view.column(shown.first + (column + 0.5) * shown.step))
     begin = math.floor(middle - 0.5 * len(words) + 0.5)
     # A blank on each side keeps the figures of neighbours apart.
-    if len(words) + 2 <= cells and 0 <= begin and begin + len(words) <= view.width:
+    if len(words) + 2 <= cells and begin >= 0 and begin + len(words) <= view.width:
         canvas.write(0, begin, words, HOME_WORDS if column == shown.home else WORDS)
     elif column == shown.home:
         begin = min(max(0, begin), max(0, view.width - len(words)))
         canvas.write(0, begin, words, HOME_WORDS)
 
 
-def legend(shown: VotePicture, unit: str, targets: int) -> tuple[Part, ...]:
+def legend(shown: VotePicture, unit: str, target: int, targets: int) -> tuple[Part, ...]:
     """Return whose votes are seen, and where."""
-    name = shown.name if targets < 2 else f"{shown.name} (n: the next of {targets})"
+    name = shown.name if targets < 2 else f"{shown.name}, {target + 1} of {targets}"
     return (
-        Part(f"{name}: row {shown.row}", short=f"{shown.name}: row {shown.row}"),
-        Part(f"θ {shown.theta:.2f}°", 2),
+        Part(name, short=shown.name),
+        *([Part("outside the columns", 1)] if shown.home < 0 else []),
+        Part(f"row {shown.row}, θ {shown.theta:.2f}°", 2, f"row {shown.row}"),
         Part(f"{significant(shown.away)}° beside its line", 3),
         Part(f"R {significant(shown.spread)} {unit}", 4),
-        *([Part("outside the columns", 1)] if shown.home < 0 else []),
     )

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from hough_tui.experiments.forecast import Outlook
     from hough_tui.experiments.vote_cost import VoteCost
 
-COLUMN = 12
+COLUMN = 13
 """Cells of a column of figures."""
 
 UNKNOWN = "…"
@@ -91,11 +91,16 @@ def rows(compared: Compared) -> list[tuple[tuple[str, str], Callable[[Outlook], 
 
 
 def _rows(told: Outlook) -> str:
-    return f"{significant(math.degrees(told.grid.theta_step))} ({told.grid.theta_bins})"
+    return f"{_short(math.degrees(told.grid.theta_step), 3)} ({told.grid.theta_bins})"
 
 
 def _columns(told: Outlook) -> str:
-    return f"{as_given(told.grid.rho_step)[:6]} ({told.grid.rho_bins})"
+    return f"{_short(told.grid.rho_step, 4)} ({told.grid.rho_bins})"
+
+
+def _short(value: float, digits: int) -> str:
+    """Return a number with so many digits at most, without zeros at its end."""
+    return as_given(float(f"{value:.{digits}g}"))
 
 
 def _size(size: int) -> str:
