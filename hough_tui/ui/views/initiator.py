@@ -56,7 +56,7 @@ class InitiatorView(Widget):
     DEFAULT_CSS = """
     InitiatorView { layout: vertical; height: 1fr; }
     InitiatorView #initiator-parts { layout: grid; height: 1fr; }
-    InitiatorView #initiator-parts { grid-size: 3 1; grid-columns: 26 1fr 46; grid-rows: 1fr; }
+    InitiatorView #initiator-parts { grid-size: 3 1; grid-columns: 24 1fr 46; grid-rows: 1fr; }
     InitiatorView OptionList { width: 100%; height: 100%; border: none; border-right: solid $panel; }
     InitiatorView OptionList:focus { border: none; border-right: solid $border; }
     InitiatorView #initiator-form { width: 100%; height: 100%; }
@@ -227,8 +227,9 @@ class InitiatorView(Widget):
             return
         at = ("initiators", self._index)
         self.post_message(FieldEdited(at, set_data(adoption.changed)["initiators"][self._index]))
-        notes = "".join(f". Note: {note}" for note in adoption.notes)
-        self.notify(f"{entry.name} has what is recommended; Ctrl+Z takes it back{notes}", markup=False)
+        # No word of the edit itself: form and figures show it, and it would cover them.
+        for note in adoption.notes:
+            self.notify(f"Note: {note}", markup=False)
 
     def _list(self) -> None:
         assert self._given is not None

@@ -27,8 +27,8 @@ class FalseCellField(NumberInput):
     def action_explain(self) -> None:
         """Say what the field is, and what it takes."""
         self.notify(
-            "how many cells a batch clutter alone may lift to the threshold, as expected: what is recommended "
-            "finds the most targets within that. A number greater than 0.",
+            "the expected number of cells a batch that clutter alone may lift to the threshold: what is "
+            "recommended finds the most targets within it. A number greater than 0.",
             title="False cells",
             markup=False,
         )

@@ -159,7 +159,9 @@ def _filling(shown: VotePicture, viewport: Viewport) -> tuple[list[np.ndarray], 
     begin = shown.first + shown.home * shown.step
     dots = ACROSS * viewport.width
     rho = np.asarray(viewport.x((np.arange(dots) + 0.5) / ACROSS))
-    rho = rho[(rho >= begin) & (rho < begin + shown.step)]
+    inside = (rho >= begin) & (rho < begin + shown.step)
+    # One that is narrower than a dot is still marked.
+    rho = rho[inside] if inside.any() else np.array([begin + 0.5 * shown.step])
     heights = np.interp(rho, shown.curve[:, 0], shown.curve[:, 1], left=0.0, right=0.0)
     least = _dot(viewport)
     lines = [
@@ -194,4 +196,5 @@ def legend(shown: VotePicture, unit: str, target: int, targets: int) -> tuple[Pa
         Part(f"row {shown.row}, θ {shown.theta:.2f}°", 2, f"row {shown.row}"),
         Part(f"{significant(shown.away)}° beside its line", 3),
         Part(f"R {significant(shown.spread)} {unit}", 4),
+        *([Part("n: the next", 5)] if targets > 1 else []),
     )

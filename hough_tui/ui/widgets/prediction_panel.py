@@ -101,10 +101,7 @@ class PredictionPanel(VerticalScroll, can_focus=False, inherit_bindings=False):
         others : how many further scenarios there are to look at
         """
         more = (Part(f"F10: {others} other{'s' * (others != 1)}", 1),) if others else ()
-        self.query_one(Caption).tell(
-            Part(f"{entry.name} on {scenario.name}, predicted", short=f"{entry.name} on {scenario.name}"),
-            *more,
-        )
+        self.query_one(Caption).tell(f"{entry.name} on {scenario.name}", *more, Part("predicted", 2))
         self._asked = Asked(entry, scenario, self._bound)
         if self._timer is not None:
             self._timer.stop()
