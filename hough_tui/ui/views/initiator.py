@@ -65,7 +65,7 @@ class InitiatorView(Widget):
     InitiatorView.without-prediction PredictionPanel { display: none; }
     InitiatorView.without-prediction #initiator-parts { grid-size: 2 1; grid-columns: 26 1fr; }
     InitiatorView.medium #initiator-parts {
-        grid-size: 2 2; grid-columns: 42 1fr; grid-rows: auto 1fr;
+        grid-size: 2 2; grid-columns: 41 1fr; grid-rows: auto 1fr;
     }
     InitiatorView.medium OptionList { height: auto; max-height: 10; }
     InitiatorView.medium #initiator-form { row-span: 2; }

@@ -48,7 +48,7 @@ class PredictionPanel(VerticalScroll, can_focus=False, inherit_bindings=False):
     PredictionPanel PredictionDensity { height: 1fr; min-height: 6; margin: 0 1; }
     PredictionPanel #bound { height: 1; padding: 0 1; }
     PredictionPanel #bound Static { width: auto; color: $text-muted; padding-right: 1; }
-    PredictionPanel FalseCellField { width: 8; margin-right: 1; background: $boost; }
+    PredictionPanel FalseCellField { width: 6; margin-right: 1; background: $boost; }
     PredictionPanel FalseCellField:focus { background: $primary 20%; }
     PredictionPanel .words { height: auto; padding: 0 1; color: $text-muted; }
     PredictionPanel.without-figures PredictionDensity { display: none; }
@@ -135,6 +135,7 @@ class PredictionPanel(VerticalScroll, can_focus=False, inherit_bindings=False):
             self._bound = found
             self._asked = Asked(self._asked.entry, self._asked.scenario, found)
             self._begin()
+            self._show()
 
     @on(Input.Submitted)
     def _submitted(self, event: Input.Submitted) -> None:
@@ -150,7 +151,6 @@ class PredictionPanel(VerticalScroll, can_focus=False, inherit_bindings=False):
         if not self.is_up_to_date and not self._is_wanted(asked):
             self._wanted_advice = asked
             self._advise(asked)
-        self._show()
 
     def _is_wanted(self, asked: Asked) -> bool:
         """Return whether the recommendation for what is asked is being worked out already."""

@@ -62,7 +62,7 @@ class PredictionTable(Widget):
 def table(compared: Compared, width: int) -> Text:
     """Return the table in so many columns."""
     room = width - 2 * COLUMN
-    lines = [Text(f"{'':{room}}{'as it is':>{COLUMN}}{'recommended':>{COLUMN}}", style="dim")]
+    lines = [Text(f"{'':{room}}{'now':>{COLUMN}}{'recommended':>{COLUMN}}", style="dim")]
     for names, figure, is_choice in rows(compared):
         name = next((name for name in names if len(name) < room), names[-1])
         own = figure(compared.own)
@@ -82,7 +82,7 @@ def rows(compared: Compared) -> list[tuple[tuple[str, str], Callable[[Outlook], 
         (("Δθ in ° (θ bins)", "Δθ, °"), _rows, True),
         ((f"Δρ in {unit} (columns)", f"Δρ, {unit}"), _columns, True),
         (("least votes", "votes ≥"), lambda told: f"{told.votes:,}", True),
-        (("votes in the home cell", "in home cell"), lambda told: f"{percent(told.share)} %", False),
+        (("votes in the home cell", "home cell"), lambda told: f"{percent(told.share)} %", False),
         (("P_D of the home cell", "P_D"), lambda told: f"{percent(told.p_detection)} %", False),
         (("false cells a batch", "false cells"), lambda told: significant(told.false_cells), False),
         (("memory of the accumulator", "memory"), lambda told: _size(told.size), False),
@@ -91,16 +91,17 @@ def rows(compared: Compared) -> list[tuple[tuple[str, str], Callable[[Outlook], 
 
 
 def _rows(told: Outlook) -> str:
-    return f"{_short(math.degrees(told.grid.theta_step), 3)} ({told.grid.theta_bins})"
+    return _counted(math.degrees(told.grid.theta_step), told.grid.theta_bins)
 
 
 def _columns(told: Outlook) -> str:
-    return f"{_short(told.grid.rho_step, 4)} ({told.grid.rho_bins})"
+    return _counted(told.grid.rho_step, told.grid.rho_bins)
 
 
-def _short(value: float, digits: int) -> str:
-    """Return a number with so many digits at most, without zeros at its end."""
-    return as_given(float(f"{value:.{digits}g}"))
+def _counted(step: float, bins: int) -> str:
+    """Return a step and how many bins that makes, as exactly as there is room for."""
+    steps = [as_given(float(f"{step:.{digits}g}")) for digits in (4, 3, 2)]
+    return next((text for shown in steps if len(text := f"{shown} ({bins})") < COLUMN - 1), steps[1])
 
 
 def _size(size: int) -> str:
