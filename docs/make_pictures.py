@@ -58,8 +58,25 @@ async def scenario(pilot: Any) -> None:
 
 
 async def initiator(pilot: Any) -> None:
-    """The parameters of an initiator."""
+    """The parameters of an initiator, and what its quantisation leads to where there is room."""
     await press(pilot, "f3", "enter")
+    forget_cost(pilot)
+
+
+async def prediction(pilot: Any) -> None:
+    """What the quantisation of an initiator leads to."""
+    await press(pilot, "f3", "f9")
+    forget_cost(pilot)
+
+
+def forget_cost(pilot: Any) -> None:
+    """Take out how long a vote takes on this machine."""
+    from dataclasses import replace
+
+    from hough_tui.ui.widgets.prediction_table import PredictionTable
+
+    table = pilot.app.screen.query_one(PredictionTable)
+    table.compared = replace(table.compared, cost=None)
 
 
 async def look(pilot: Any) -> None:
@@ -106,6 +123,7 @@ async def results(pilot: Any) -> None:
 VIEWS: dict[str, Callable[[Any], Awaitable[None]]] = {
     "scenario": scenario,
     "initiator": initiator,
+    "prediction": prediction,
     "look": look,
     "why-this-peak": why,
     "monte-carlo": monte_carlo,
@@ -178,7 +196,7 @@ PLACES = {
     "Forms": ("ModelForm", "ValueField", "NumberInput", "TextInput", "Menu", "Flag"),
     "Tables in forms (targets, clutter)": ("ListTable", "CellTable"),
     "Scenario": ("ScenarioView",),
-    "Initiator": ("InitiatorView",),
+    "Initiator": ("InitiatorView", "PredictionDensity"),
     "Look": ("LookView", "LookPanel"),
     "Look: the plane (and the picture of Scenario)": ("Plane",),
     "Look: the accumulator": ("Heatmap",),

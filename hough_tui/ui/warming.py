@@ -36,3 +36,14 @@ def warm() -> None:
         algorithm.accumulator(drawn.chunk.trial(0), context, parameters)
         for criterion in (Criterion(rho=1.0), Criterion(plots=2)):
             score(tracks, known, drawn.chunk.offsets, criterion)
+    _warm_prediction(scenario)
+
+
+def _warm_prediction(scenario: Scenario) -> None:
+    """Load what predictions need, and measure what votes cost: last, since it is wanted last."""
+    from hough_tui.experiments.forecast import recommendation
+    from hough_tui.experiments.vote_cost import vote_cost
+
+    for is_weighted in (False, True):
+        vote_cost(is_weighted)
+    recommendation(scenario, 1.0)

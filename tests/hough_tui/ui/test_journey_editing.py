@@ -115,7 +115,8 @@ def test_what_may_mean_two_things_is_asked_back(drive):
             await user.until(lambda: "✗" not in user.text)
             assert words not in user.text
 
-    drive(journey, "course-report")
+    # Wide enough for each message to stand in one line.
+    drive(journey, "course-report", size=(160, 48))
 
 
 def test_edits_are_undone_and_done_again_one_by_one(drive):
