@@ -45,7 +45,9 @@ def initiate(
     accumulator: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE.npz", help="Write votes, theta (radians) and rho of the accumulator, too."
+            metavar="FILE.npz",
+            help="Write votes, theta (radians) and rho of the accumulator, too; of weighted also std and "
+            "weighted.",
         ),
     ] = None,
     assigned: Annotated[

@@ -60,8 +60,10 @@ class WhyPeak(ModalScreen[None]):
                 markup=False,
             )
             if accumulator.weighted is not None:
-                weighted = float(accumulator.weighted[self._row, self._column])
-                yield Static(f"Weighted by their standard deviation: {weighted:.4g} votes", markup=False)
+                weighted = f"{float(accumulator.weighted[self._row, self._column]):.4g} votes"
+                if accumulator.std is not None and np.isnan(accumulator.std[self._row, self._column]):
+                    weighted += ", as there are too few for their deviation to count"
+                yield Static(f"Weighted by their standard deviation: {weighted}", markup=False)
             scatter = "not defined for fewer than two votes" if spread is None else f"{spread:.4g} {unit}"
             yield Static(f"Standard deviation of the ρ that voted for it: {scatter}", markup=False)
             yield Static(self._surroundings())

@@ -203,7 +203,13 @@ def test_the_accumulator_shows_votes_their_deviation_and_weighted_votes(drive):
         assert heatmap._scene.values is seen.weighted
         await user.press("enter")
         await user.screen("WhyPeak")
-        await user.sees("Weighted by their standard deviation")
+        await user.sees(f"Weighted by their standard deviation: {seen.weighted[row, column]:.4g} votes")
+        assert "too few" not in user.text
+        await user.press("escape")
+        heatmap.move_cursor(*np.argwhere((seen.votes > 1) & np.isnan(seen.std))[0].tolist())
+        await user.press("enter")
+        await user.screen("WhyPeak")
+        await user.sees("Weighted by their standard deviation: 0 votes, as there are too few")
         await user.press("escape", "w")
         assert panel.layer == "votes"
 
