@@ -28,6 +28,9 @@ FEWEST_BINS = 1.5
 
 MARGIN = 1.04
 SAMPLES = 800
+MOST_WORK = 5_000_000
+"""The greatest threshold times rows: the false cells of every row are worked out for every lower one, too."""
+
 BINS_TOLD = 12
 """Bins to each side of the home cell of which the share of votes is worked out."""
 
@@ -126,10 +129,10 @@ def forecast(entry: InitiatorEntry, scenario: Scenario) -> Forecast:
     parameters = entry.parameters.resolved(context)
     assert isinstance(parameters, AccumulatingParameters)
     question, grid, votes = question_of(scenario), parameters.grid.grid(context), _threshold(parameters)
-    if votes > MOST_VOTES:
+    if votes > MOST_VOTES or votes * grid.theta_bins > MOST_WORK:
         raise RequestError(
-            f"{entry.name}: a threshold of {votes:,} votes; what one of more than {MOST_VOTES:,} leads to is "
-            "not predicted"
+            f"{entry.name}: a threshold of {votes:,} votes in {grid.theta_bins:,} rows; what it leads to is "
+            f"worked out for {MOST_VOTES:,} votes at most, and for {MOST_WORK:,} votes times rows"
         )
     told = predict(question, grid, votes)
     names = [scenario.targets[index].name or f"target {index}" for index in moving_targets(scenario)]

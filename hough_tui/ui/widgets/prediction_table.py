@@ -61,13 +61,15 @@ class PredictionTable(Widget):
 
 def table(compared: Compared, width: int) -> Text:
     """Return the table in so many columns."""
-    room = width - 2 * COLUMN
+    room = max(1, width - 2 * COLUMN)
+    every = rows(compared)
+    # All long names or none: a mixture would read as if it meant something.
+    which = 0 if all(len(names[0]) < room for names, *_ in every) else 1
     lines = [Text(f"{'':{room}}{'now':>{COLUMN}}{'recommended':>{COLUMN}}", style="dim")]
-    for names, figure, is_choice in rows(compared):
-        name = next((name for name in names if len(name) < room), names[-1])
+    for names, figure, is_choice in every:
         own = figure(compared.own)
         other = compared.missing if compared.recommended is None else figure(compared.recommended)
-        line = Text(f"{name:{room}}")
+        line = Text(f"{names[which]:{room}}")
         line.append(f"{own:>{COLUMN}}", "" if is_choice else "bold")
         is_new = compared.recommended is not None and other != own
         line.append(f"{other:>{COLUMN}}", "bold" if is_new else "dim")
