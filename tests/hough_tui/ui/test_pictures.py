@@ -12,6 +12,7 @@ from pytest_textual_snapshot import SVGImageExtension
 import hough_tui.experiments.chunks as chunks
 import hough_tui.experiments.look as looking
 import hough_tui.experiments.store as store
+import hough_tui.experiments.vote_cost as vote_cost
 from hough_tui.experiments.engine import Job
 from hough_tui.ui.widgets.heatmap import Heatmap
 
@@ -33,6 +34,8 @@ def still_clocks(monkeypatch):
     monkeypatch.setattr(chunks, "time", SimpleNamespace(thread_time=lambda: 0.0))
     monkeypatch.setattr(Job, "seconds", property(lambda job: 1.0))
     monkeypatch.setattr(store, "datetime", Noon)
+    cost = vote_cost.VoteCost(1e-9, 1e-10)
+    monkeypatch.setattr(vote_cost, "_measured", {False: cost, True: cost})
     monkeypatch.setattr(store, "secrets", SimpleNamespace(token_hex=lambda count: "0" * 2 * count))
 
 
