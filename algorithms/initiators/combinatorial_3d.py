@@ -205,7 +205,7 @@ def _combinatorial(  # type: ignore[no-untyped-def]
             else:
                 plots, state, count, full = tracks_along(
                     place, when, weights, pairs, kept, usable, least, limits, slowest, fastest, allowance,
-                    found, squares, plots, state, count,
+                    planes[:0], found, squares, plots, state, count,
                 )  # fmt: skip
                 is_full = is_full or full
         found_by_trial[trial + 1] = count

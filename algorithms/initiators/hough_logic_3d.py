@@ -51,8 +51,8 @@ class HoughLogicParameters(MotionParameters):
     )
     speed_gate: Literal["space", "planes"] = parameter(
         "space",
-        help="space tests the speed between two plots as it is; planes demands it of both projections, too, "
-        "which shuts out whoever flies across a plane",
+        help="space tests the speed as it is; planes demands the least speed of both projections of a "
+        "track's velocity, too, which shuts out whoever flies across a plane",
     )
 
     @model_validator(mode="after")
@@ -89,29 +89,11 @@ def _pass_gate(position, station, across, up, rows, step, length, votes, passed)
         counts[:] = 0
         for plot in range(len(position)):
             x, y = position[plot, across] - station[across], position[plot, up] - station[up]
-            columns[plot] = int(math.floor((x * math.cos(theta) + y * math.sin(theta)) / length)) + reach
+            columns[plot] = math.floor((x * math.cos(theta) + y * math.sin(theta)) / length) + reach
             counts[columns[plot]] += 1
         for plot in range(len(position)):
             if counts[columns[plot]] >= votes:
                 passed[plot] = True
-
-
-@kernel
-def _is_fast_in(position, time, covariance, first, second, across, up, slowest, fastest, allowance):  # type: ignore[no-untyped-def]
-    """Return whether the projection of a pair on a plane passes the speed gate.
-
-    The least speed is demanded as it stands: what it is to shut out, noise would let in.
-    """
-    x = position[second, across] - position[first, across]
-    y = position[second, up] - position[first, up]
-    distance, elapsed = math.sqrt(x * x + y * y), time[second] - time[first]
-    noise = 0.0
-    if distance > 0.0:
-        for plot in (first, second):
-            noise += x * x * covariance[plot, across, across] + y * y * covariance[plot, up, up]
-            noise += 2.0 * x * y * covariance[plot, across, up]
-        noise = allowance * math.sqrt(noise) / distance
-    return slowest * elapsed <= distance <= fastest * elapsed + noise
 
 
 @kernel
@@ -139,18 +121,11 @@ def _gates_and_logic(  # type: ignore[no-untyped-def]
         tried[trial] = every
         kept = np.empty(len(pairs), np.bool_)
         for pair in range(len(pairs)):
-            first, second = pairs[pair, 0], pairs[pair, 1]
-            kept[pair] = usable[first] and usable[second]
-            if in_planes and kept[pair]:
-                for plane in range(2):
-                    kept[pair] = kept[pair] and _is_fast_in(
-                        place, when, noise, first, second, planes[plane, 0], planes[plane, 1],
-                        slowest, fastest, allowance,
-                    )  # fmt: skip
+            kept[pair] = usable[pairs[pair, 0]] and usable[pairs[pair, 1]]
         gated[trial] = kept.sum()
         plots, state, count, full = tracks_along(
             place, when, weights, pairs, kept, usable, least, limits, slowest, fastest, allowance,
-            found, squares, plots, state, count,
+            planes if in_planes else planes[:0], found, squares, plots, state, count,
         )  # fmt: skip
         is_full = is_full or full
         found_by_trial[trial + 1] = count

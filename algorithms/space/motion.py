@@ -136,8 +136,9 @@ def _keep(found, squares, count, path, length, square):  # type: ignore[no-untyp
 
 @kernel
 def search_motions(  # type: ignore[no-untyped-def]
-    position, time, weight, pairs, usable, plots, least, limits, slowest, fastest, allowance, found, squares
-):
+    position, time, weight, pairs, usable, plots, least, limits, slowest, fastest, allowance, planes,
+    found, squares,
+):  # fmt: skip
     """Write the tracks of constant velocity along pairs of usable plots, and return how many there are.
 
     From every plot a track is continued by each plot that a pair leads to, as long as the fit to
@@ -152,6 +153,7 @@ def search_motions(  # type: ignore[no-untyped-def]
     least : least number of plots of a track
     limits : float64 (2, …), the greatest χ² by the number of plots; see `chi_square_limits`
     slowest, fastest, allowance : of the speed, and standard deviations by which it may miss
+    planes : int64 (k, 2), axes of planes in which the velocity has the least speed, too, as it is
     found : int64 (≥ `MOST_FOUND`, most plots of a track), is given the plots of each track, −1 beyond
     squares : float64 of the same length, is given χ²
     """
@@ -186,7 +188,11 @@ def search_motions(  # type: ignore[no-untyped-def]
                 noise = allowance * deviation
                 if square > limits[1, depth + 1] or not slowest - noise <= speed <= fastest + noise:
                     continue
-                if depth + 1 >= least and square <= limits[0, depth + 1] and count < len(found):
+                is_enough = depth + 1 >= least and square <= limits[0, depth + 1]
+                for plane in range(len(planes)):
+                    across, up = state[1, planes[plane, 0]], state[1, planes[plane, 1]]
+                    is_enough = is_enough and np.sqrt(across * across + up * up) >= slowest
+                if is_enough and count < len(found):
                     path[depth] = plot
                     count = _keep(found, squares, count, path, depth + 1, square)
             path[depth], following[depth] = plot, plots[plot]

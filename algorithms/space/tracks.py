@@ -110,10 +110,12 @@ class SpaceInitiator(ChunkInitiator):
 
 @kernel
 def tracks_along(  # type: ignore[no-untyped-def]
-    position, time, weight, pairs, kept, usable, least, limits, slowest, fastest, allowance,
+    position, time, weight, pairs, kept, usable, least, limits, slowest, fastest, allowance, planes,
     found, squares, plots, state, count,
 ):  # fmt: skip
     """Append the disjoint tracks of constant velocity along kept pairs of usable plots.
+
+    For the parameters see `search_motions`.
 
     Returns
     -------
@@ -124,7 +126,7 @@ def tracks_along(  # type: ignore[no-untyped-def]
     sorted_pairs, begins = by_first(pairs, kept, len(position))
     number = search_motions(
         position, time, weight, sorted_pairs, usable, begins, least, limits, slowest, fastest, allowance,
-        found, squares,
+        planes, found, squares,
     )  # fmt: skip
     if number == len(found):
         return plots, state, count, True
