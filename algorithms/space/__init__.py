@@ -1,0 +1,1 @@
+"""Initiation in space: pairs of plots within reach, votes in planes, tracks of constant velocity."""
