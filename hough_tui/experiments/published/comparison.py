@@ -15,11 +15,13 @@ from algorithms.parameters import unknown
 from hough_tui.experiments.columns import TrialColumns
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import Cell, Plan, plan_run
-from hough_tui.experiments.published import course, thesis
+from hough_tui.experiments.published import course, par, thesis
 from hough_tui.experiments.published.tables import MEASURES, Entry, PublishedTable
 from scenarios.files import load_set
 
-TABLES: dict[str, PublishedTable] = {table.name: table for table in (*course.TABLES, *thesis.TABLES)}
+TABLES: dict[str, PublishedTable] = {
+    table.name: table for table in (*course.TABLES, *thesis.TABLES, *par.TABLES)
+}
 
 
 def published_table(name: str) -> PublishedTable:
@@ -71,6 +73,7 @@ def _columns_of(entry: Entry, found: Sequence[tuple[Cell, TrialColumns]]) -> Tri
         if cell.experiment.name == entry.experiment
         and cell.entry.name == entry.initiator
         and cell.swept == entry.swept
+        and entry.scenario in (None, cell.scenario.name)
     )
 
 

@@ -37,11 +37,20 @@ def _square_error(errors: NDArray[np.float32]) -> NDArray[np.float64]:
     return np.where(count > 0, mean, np.nan)
 
 
+def _pure(columns: TrialColumns) -> NDArray[np.float64]:
+    """Return the share of the matching tracks of each trial that hold plots of their target alone."""
+    matching = columns.tracks - columns.false
+    known = (matching > 0) & (columns.mixed >= 0)
+    share: NDArray[np.float64] = 1.0 - columns.mixed / np.maximum(matching, 1)
+    return np.where(known, share, np.nan)
+
+
 MEASURES: dict[str, Measure] = {
     "success_rate": Measure(lambda columns: columns.found.mean(axis=1), is_share=True),
     "false_track_ratio": Measure(false_ratio, is_share=True),
     "success_control": Measure(lambda columns: columns.control_found.mean(axis=1), is_share=True),
     "false_tracks_per_trial": Measure(lambda columns: columns.false.astype(np.float64)),
+    "pure_track_ratio": Measure(_pure, is_share=True),
     "duplicates_per_trial": Measure(lambda columns: columns.duplicates.astype(np.float64)),
     "theta_mse": Measure(lambda columns: _square_error(columns.theta_error)),
     "rho_mse": Measure(lambda columns: _square_error(columns.rho_error)),
@@ -56,7 +65,8 @@ class Entry:
     Attributes
     ----------
     case : how the row is called
-    experiment, initiator, swept : which cell of the bundled set measures it
+    experiment, initiator, swept, scenario : which cell of the bundled set measures it; no scenario is
+        named where the experiment has one only
     metric : a name of `MEASURES`
     published : the printed figure; None where the source has none
     note : what a reader must know
@@ -71,6 +81,7 @@ class Entry:
     note: str | None = None
     swept: dict[str, int | float] = field(default_factory=dict)
     is_judged: bool = True
+    scenario: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
