@@ -195,20 +195,21 @@ def _most_scans(chunk: PlotChunk) -> int:
     return int(np.add.reduceat(begins, starts).max())
 
 
-def with_states(plots: Plots, found: TrackChunk) -> Tracks:
+def with_states(plots: Plots, found: TrackChunk, dimensions: int = 2) -> Tracks:
     """Return the tracks of one batch with their plots and least-squares states.
 
     Parameters
     ----------
     plots : the batch
     found : its tracks, with plots; a chunk of one trial
+    dimensions : of the states: 2 in the plane (x, y), 3 in space
     """
     assert found.plots is not None
     time = plots.first_time
     held = found.plots >= 0
     rows = np.where(held, found.plots, 0)
-    position, velocity = _least_squares(plots, rows, held, time)
-    theta, rho = line_through(position, velocity)
+    position, velocity = _least_squares(plots, rows, held, time, dimensions)
+    theta, rho = line_through(position[:, :2], velocity[:, :2])
     return Tracks(
         found.theta,
         found.rho,
@@ -223,16 +224,16 @@ def with_states(plots: Plots, found: TrackChunk) -> Tracks:
 
 
 def _least_squares(
-    plots: Plots, rows: NDArray[np.int64], held: NDArray[np.bool_], time: float
+    plots: Plots, rows: NDArray[np.int64], held: NDArray[np.bool_], time: float, dimensions: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     if len(plots) == 0:
-        empty = np.full((len(rows), 2), np.nan)
+        empty = np.full((len(rows), dimensions), np.nan)
         return empty, empty
     weight = held.astype(np.float64)
     with np.errstate(invalid="ignore", divide="ignore"):
         count = weight.sum(axis=1)
         elapsed = plots.time[rows] - time
-        place = plots.position[rows, :2]
+        place = plots.position[rows, :dimensions]
         mean_time = (weight * elapsed).sum(axis=1) / count
         mean_place = (weight[..., None] * place).sum(axis=1) / count[:, None]
         centred = weight * (elapsed - mean_time[:, None])

@@ -63,6 +63,7 @@ class Context:
     sigma : standard deviation of the measurement noise on each axis, in `unit`; None if unknown
     region : where plots can lie; None if unknown
     unit : unit of all lengths
+    station : where the sensor stands; None if unknown
     """
 
     scans: int
@@ -71,6 +72,7 @@ class Context:
     sigma: tuple[float, ...] | None = None
     region: Box | None = None
     unit: Unit = Unit.KILOMETRE
+    station: tuple[float, ...] | None = None
 
     @property
     def noise(self) -> float | None:

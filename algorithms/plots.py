@@ -18,6 +18,7 @@ class Plots:
     time : float64 (n,), seconds
     position : float64 (n, 2) or (n, 3), in the unit of the scenario
     amplitude, doppler : float64 (n,), where the sensor gives them
+    covariance : float64 (n, d, d), of the noise of each position, where it is known for each plot
     """
 
     scan: NDArray[np.int32]
@@ -25,6 +26,7 @@ class Plots:
     position: NDArray[np.float64]
     amplitude: NDArray[np.float64] | None = None
     doppler: NDArray[np.float64] | None = None
+    covariance: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         return len(self.scan)
@@ -36,7 +38,8 @@ class Plots:
 
     def chunk(self) -> PlotChunk:
         """Return the chunk that holds this batch alone."""
-        return PlotChunk(self.scan, self.time, self.position, np.array([0, len(self)], dtype=np.int64))
+        offsets = np.array([0, len(self)], dtype=np.int64)
+        return PlotChunk(self.scan, self.time, self.position, offsets, self.covariance)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +48,7 @@ class PlotChunk:
 
     Attributes
     ----------
-    scan, time, position : as in `Plots`, sorted by trial, then by scan
+    scan, time, position, covariance : as in `Plots`, sorted by trial, then by scan
     offsets : int64 (trials + 1,), where each trial's plots begin, and the end of the last
     """
 
@@ -53,6 +56,7 @@ class PlotChunk:
     time: NDArray[np.float64]
     position: NDArray[np.float64]
     offsets: NDArray[np.int64] = field(default_factory=lambda: np.zeros(1, dtype=np.int64))
+    covariance: NDArray[np.float64] | None = None
 
     @property
     def trials(self) -> int:
@@ -67,4 +71,18 @@ class PlotChunk:
     def trial(self, index: int) -> Plots:
         """Return the plots of one trial (views, not copies)."""
         rows = slice(self.offsets[index], self.offsets[index + 1])
-        return Plots(self.scan[rows], self.time[rows], self.position[rows])
+        covariance = None if self.covariance is None else self.covariance[rows]
+        return Plots(self.scan[rows], self.time[rows], self.position[rows], covariance=covariance)
+
+    def chosen(self, kept: NDArray[np.bool_]) -> PlotChunk:
+        """Return the chunk with some of its plots only; a trial may be left without any.
+
+        Parameters
+        ----------
+        kept : bool (n,)
+        """
+        before = np.concatenate([[0], np.cumsum(kept)]).astype(np.int64)
+        covariance = None if self.covariance is None else self.covariance[kept]
+        return PlotChunk(
+            self.scan[kept], self.time[kept], self.position[kept], before[self.offsets], covariance
+        )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +19,10 @@ class Tracks:
         accumulating initiator the centre of its cell
     score : float64 (m,), what the initiator ranks by (for the accumulating ones: votes)
     plots : for each track the rows of its plots, at most one a scan, in order of scan
-    position, velocity : float64 (m, 2), least-squares state at `time`; NaN where plots of
-        fewer than two scans leave it open
-    fitted_theta, fitted_rho : float64 (m,), the line of that state; NaN where it is open
+    position, velocity : float64 (m, 2), for an initiator in space (m, 3): least-squares state
+        at `time`; NaN where plots of fewer than two scans leave it open
+    fitted_theta, fitted_rho : float64 (m,), the line of that state in the plane (x, y); NaN
+        where it is open
     time : seconds, the time of the batch's first scan
     """
 
@@ -63,6 +65,7 @@ class TrackChunk:
     votes_outside : int64 (trials,), votes that fell outside the grid (zeros without a grid)
     plots : int64 (m, k) or None, the rows of each track's plots counted from the beginning
         of its trial, −1 where there are fewer than k; None until association has run
+    effort : int64 (trials,) by name, what the initiator counted of its work, such as pairs of plots
     """
 
     offsets: NDArray[np.int64]
@@ -71,6 +74,7 @@ class TrackChunk:
     score: NDArray[np.float64]
     votes_outside: NDArray[np.int64]
     plots: NDArray[np.int64] | None = None
+    effort: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
 
     def strongest(self, most: int) -> TrackChunk:
         """Return the tracks with the highest scores of a chunk of one trial, the highest first."""
@@ -82,6 +86,7 @@ class TrackChunk:
             self.score[order],
             self.votes_outside,
             None if self.plots is None else self.plots[order],
+            self.effort,
         )
 
     @property

@@ -245,14 +245,7 @@ class Draw:
     def without_targets(self) -> Draw:
         """Return the same draw with the plots of the targets taken out: the control."""
         kept = self.origin < 0
-        before = np.concatenate([[0], np.cumsum(kept)]).astype(np.int64)
-        chunk = PlotChunk(
-            self.chunk.scan[kept],
-            self.chunk.time[kept],
-            self.chunk.position[kept],
-            before[self.chunk.offsets],
-        )
-        return Draw(chunk, self.origin[kept], self.shift)
+        return Draw(self.chunk.chosen(kept), self.origin[kept], self.shift)
 
 
 def draw(world: World, seed: int, first_trial: int, trials: int = 1) -> Draw:

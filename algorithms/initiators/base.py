@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -28,12 +28,14 @@ class Initiator(ABC):
     summary : one line for people
     source : where it is published
     parameters : the model that declares its parameters
+    dimensions : 2 where it works in the plane (x, y), whatever plots it is given; 3 in space
     """
 
     name: ClassVar[str]
     summary: ClassVar[str]
     source: ClassVar[str] = ""
     parameters: ClassVar[type[Parameters]]
+    dimensions: ClassVar[Literal[2, 3]] = 2
 
     @abstractmethod
     def initiate(self, plots: Plots, context: Context, parameters: Any) -> Tracks:
@@ -73,11 +75,12 @@ class ChunkInitiator(Initiator):
         """Return the tracks of one batch, with their plots and kinematic states."""
         chunk = plots.chunk()
         found = self.initiate_chunk(chunk, context, parameters)
-        return with_states(plots, self.associate_chunk(chunk, found, context, parameters))
+        found = self.associate_chunk(chunk, found, context, parameters)
+        return with_states(plots, found, self.dimensions)
 
     def strongest(self, plots: Plots, context: Context, parameters: Any, most: int) -> tuple[Tracks, int]:
         """Return the tracks with the highest scores; the others are not associated with plots."""
         chunk = plots.chunk()
         found = self.initiate_chunk(chunk, context, parameters)
         chosen = self.associate_chunk(chunk, found.strongest(most), context, parameters)
-        return with_states(plots, chosen), len(found.theta)
+        return with_states(plots, chosen, self.dimensions), len(found.theta)

@@ -56,7 +56,7 @@ def _count(  # type: ignore[no-untyped-def]
             # The row as the angle counts it may lie beyond the seam; ρ is taken in the row itself.
             beyond = math.floor(theta[target] / theta_step - offset + 0.5)
             row = beyond % rows
-            rho = middle_x[target] * cosine[row] + middle_y[target] * sine[row]
+            rho = middle_x[trial, target] * cosine[row] + middle_y[trial, target] * sine[row]
             column = math.floor((rho - begin) / rho_step)
             home[trial, target] = block[trial, target] = -1
             if 0 <= column < width:
@@ -84,7 +84,7 @@ def count_cells(
     chunk : plots
     grid : the quantisation
     theta : float64 (targets,), of the targets' lines
-    middle : float64 (targets, 2), places of mid-track
+    middle : float64 (trials, targets, 2), places of mid-track
     shifts : float64 (trials, 2), in [0, 1): by which share of Δθ and of Δρ each trial's grid is moved, so
         that a line has no fixed place in its cell
     most : the number of votes from which on cells are counted together
@@ -96,8 +96,8 @@ def count_cells(
     accumulator = np.zeros((grid.theta_bins, grid.rho_bins + 1 + 2), dtype=np.uint32)
     _count(
         x, y, chunk.offsets, shifts, np.asarray(theta, dtype=float),
-        np.ascontiguousarray(middle[:, 0] - grid.origin[0]),
-        np.ascontiguousarray(middle[:, 1] - grid.origin[1]),
+        np.ascontiguousarray(middle[..., 0] - grid.origin[0]),
+        np.ascontiguousarray(middle[..., 1] - grid.origin[1]),
         grid.theta_step, grid.theta_offset, grid.rho_min, grid.rho_step,
         np.empty(grid.theta_bins), np.empty(grid.theta_bins), accumulator,
         np.empty(max(chunk.largest, 1), np.int32), home, block, cells,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -17,7 +16,7 @@ from hough_tui.cli.process import announce_compilation, refuse, reported, tell
 def advise(
     name: Annotated[
         str | None,
-        typer.Argument(metavar="[SET[:SCENARIO]]", help="The scenario that it is for; or give options."),
+        typer.Argument(metavar="SET[:SCENARIO]", help="The scenario that it is for; or give options."),
     ] = None,
     assignments: SetOption = None,
     sigma: Annotated[float | None, typer.Option(help="Standard deviation of the noise on x and y.")] = None,
@@ -34,7 +33,8 @@ def advise(
     ] = None,
     unit: Annotated[str | None, typer.Option(help="Unit of all lengths: km, m or nmi.")] = None,
     false_cells: Annotated[
-        float, typer.Option(metavar="BOUND", help="Expected number of cells that clutter may lift a batch.")
+        float,
+        typer.Option(metavar="BOUND", help="How many cells a batch clutter alone may lift, on the mean."),
     ] = 1.0,
     kappa: Annotated[
         float, typer.Option(help="How far a line's extent may spread its votes, in σ of the noise.")
@@ -51,7 +51,7 @@ def advise(
     ] = None,
     seed: Annotated[int, typer.Option(min=0, max=2**64 - 1, help="Draws of --check.")] = 1,
     apply: Annotated[
-        Path | None, typer.Option(metavar="SET.yaml", help="Write it into the initiators of this set.")
+        str | None, typer.Option(metavar="SET.yaml", help="Write it into the initiators of this set.")
     ] = None,
     initiator: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Entry that --apply changes; may be repeated.")
@@ -96,7 +96,7 @@ def advise(
         from hough_tui.experiments.adoption import adopt_in_file
 
         adoption = adopt_in_file(apply, advice, initiator or ())
-        told["applied"] = {"set": str(apply), "initiators": adoption.names}
+        told["applied"] = {"set": apply, "initiators": adoption.names}
         tell(f"written to {apply}: {', '.join(adoption.names)}")
         for note in adoption.notes:
             tell(note)

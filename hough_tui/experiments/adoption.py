@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from algorithms.errors import RequestError
 from algorithms.initiators.accumulating import AccumulatingParameters
-from algorithms.parameters import unknown
+from algorithms.parameters import Parameters, unknown
 from algorithms.quantisation.advisor import Advice
 from scenarios.bundled import bundled_paths
-from scenarios.files import LARGEST_FILE, parse_set, read_text, save_set, set_data
+from scenarios.files import load_set, locate, save_set, set_data
 from scenarios.model import ScenarioSet
+
+LEAST_VOTES = "least_votes"
+"""Where this is declared, the threshold is on weighted votes, and plain votes must be more than these."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +39,8 @@ def adopt(given: ScenarioSet, advice: Advice, names: Sequence[str] = ()) -> Adop
 
     Rows, Δρ and votes are written; where the columns begin and how many there are follows from the region
     again, since those of another Δρ would not cover it. A suppression window is written where the entry has
-    one, `fraction` goes because `votes` replaces it.
+    one, `fraction` goes because `votes` replaces it. Where votes are weighted their threshold stays, and the
+    least plain votes of a cell are written.
 
     Parameters
     ----------
@@ -69,7 +72,7 @@ def adopt(given: ScenarioSet, advice: Advice, names: Sequence[str] = ()) -> Adop
     data = set_data(given)
     for entry in data["initiators"]:
         if entry["name"] in chosen:
-            _write(entry, advice)
+            _write(entry, advice, given.entry(entry["name"]).algorithm.parameters)
     notes = [
         f"experiment {experiment.name} sweeps {key}, over what is recommended"
         for experiment in given.experiments
@@ -79,22 +82,25 @@ def adopt(given: ScenarioSet, advice: Advice, names: Sequence[str] = ()) -> Adop
     return Adoption(ScenarioSet.model_validate(data), chosen, tuple(notes))
 
 
-def _write(entry: dict[str, Any], advice: Advice) -> None:
+def _write(entry: dict[str, Any], advice: Advice, declared: type[Parameters]) -> None:
     grid = {
         key: value
         for key, value in (entry.get("grid") or {}).items()
         if key in ("theta_bins", "theta_offset")
     }
     entry["grid"] = {**grid, "theta_bins": advice.grid.theta_bins, "rho_step": advice.grid.rho_step}
-    entry.pop("fraction", None)
-    entry["votes"] = advice.votes
+    if LEAST_VOTES in declared.model_fields:
+        entry[LEAST_VOTES] = advice.votes - 1
+    else:
+        entry.pop("fraction", None)
+        entry["votes"] = advice.votes
     window = advice.prediction.window
     for key, value in (("suppress_theta", window.theta), ("suppress_rho", window.rho_upright)):
         if key in entry:
             entry[key] = value
 
 
-def adopt_in_file(path: Path, advice: Advice, names: Sequence[str] = ()) -> Adoption:
+def adopt_in_file(name: str, advice: Advice, names: Sequence[str] = ()) -> Adoption:
     """Write a recommendation into a set's file; comments, order and layout survive.
 
     Raises
@@ -102,11 +108,12 @@ def adopt_in_file(path: Path, advice: Advice, names: Sequence[str] = ()) -> Adop
     RequestError
         Where the file is no set that can be written, or an entry is not fit for it.
     """
-    if not path.exists() and str(path) in bundled_paths():
+    path = locate(name)
+    if path in bundled_paths().values():
         raise RequestError(
-            f"--apply {path}: a bundled set is not written to; keep a copy first: hough-tui sets {path} > "
-            f"{path}.yaml"
+            f"--apply {name}: a bundled set is not written to; write into a copy: hough-tui sets {path.stem} "
+            "> mine.yaml"
         )
-    adoption = adopt(parse_set(read_text(path, LARGEST_FILE), str(path)), advice, names)
+    adoption = adopt(load_set(path), advice, names)
     save_set(adoption.changed, path)
     return adoption

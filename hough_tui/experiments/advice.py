@@ -128,7 +128,7 @@ def _of_threshold(advice: Advice) -> str:
     return (
         f"The home cell holds {expected * told.share:.3g} of the {expected:.3g} votes expected of a target, "
         f"and up to {other:.3g} others. Clutter alone lifts {told.false_cells:.3g} cells to {votes} votes, "
-        f"where {advice.question.false_cells:g} are allowed{below}."
+        f"within the bound of {advice.question.false_cells:g}{below}."
     )
 
 

@@ -17,6 +17,7 @@ class TrialColumns:
 
     Attributes
     ----------
+    trial : int32 (trials,), which trials of the experiment they are, rising
     found : bool (trials, targets), whether the target was found
     tracks, false, duplicates : int32 (trials,), numbers of tracks
     theta_error, rho_error : float32 (trials, targets), radians and the unit of length; NaN
@@ -26,6 +27,7 @@ class TrialColumns:
         target; no rows where the experiment has no control
     """
 
+    trial: NDArray[np.int32]
     found: NDArray[np.bool_]
     tracks: NDArray[np.int32]
     false: NDArray[np.int32]
@@ -39,6 +41,7 @@ class TrialColumns:
     def empty(cls, trials: int, targets: int, *, control: bool) -> TrialColumns:
         """Return columns to be filled chunk by chunk."""
         return cls(
+            np.arange(trials, dtype=np.int32),
             np.zeros((trials, targets), np.bool_),
             np.zeros(trials, np.int32),
             np.zeros(trials, np.int32),

@@ -61,12 +61,13 @@ def run_trials(scenarios: Sequence[Scenario], grid: Grid, trials: int, seed: int
     parts = []
     for index, scenario in enumerate(scenarios):
         begin, end = (trials * place // len(scenarios) for place in (index, index + 1))
-        world, lines = World.of(scenario), [line for _, line in moving_targets(scenario)]
-        theta = np.array([line.theta for line in lines], dtype=float)
-        middle = np.array([line.middle for line in lines], dtype=float).reshape(-1, 2)
+        world, lines = World.of(scenario), moving_targets(scenario)
+        theta = np.array([line.theta for line in lines.values()], dtype=float)
+        place = np.array([line.middle for line in lines.values()], dtype=float).reshape(-1, 2)
         for first in range(begin, end, CHUNK):
             count = min(CHUNK, end - first)
             drawn = draw(world, seed, first, count)
+            middle = place + drawn.shift[:, list(lines)]
             shifts = np.random.default_rng([seed, first]).random((count, 2))
             own = count_cells(drawn.chunk, grid, theta, middle, shifts, most)
             alone = count_cells(drawn.without_targets().chunk, grid, theta, middle, shifts, most)

@@ -14,7 +14,7 @@ from algorithms.parameters import validated
 from algorithms.quantisation.question import Clutter, ClutterSource, Question, TargetLine
 from hough_tui.experiments.choice import changed, chosen_scenario
 from scenarios.files import load_set
-from scenarios.model import Scenario, Target
+from scenarios.model import ExactClutter, Scenario, Target
 
 PLACEMENTS = 40
 """Places and headings of a target of which only the speed is known, in the trials of a check."""
@@ -79,17 +79,15 @@ class Design:
         return self.scenarios[0].interval
 
 
-def moving_targets(scenario: Scenario) -> list[tuple[str, TargetLine]]:
-    """Return name and line of each target that moves and is there within the batch."""
-    found = []
+def moving_targets(scenario: Scenario) -> dict[int, TargetLine]:
+    """Return the line of each target that moves and is there within the batch, by its number."""
+    found = {}
     for index, target in enumerate(scenario.targets):
-        last = scenario.scans - 1 if target.death is None else min(target.death, scenario.scans - 1)
-        scans = last - target.birth + 1
-        if scans >= 1 and not target.stands_still:
-            line = TargetLine.of_motion(
+        scans = len(target.present(scenario.scans))
+        if scans and not target.stands_still:
+            found[index] = TargetLine.of_motion(
                 target.position, target.velocity, scans, scenario.interval, scenario.sensor.axes
             )
-            found.append((target.name or f"target {index}", line))
     return found
 
 
@@ -101,7 +99,7 @@ def question_of(scenario: Scenario, demands: Demands | None = None) -> Question:
     RequestError
         Where no target moves, or a demand is not allowed.
     """
-    lines = tuple(line for _, line in moving_targets(scenario))
+    lines = tuple(moving_targets(scenario).values())
     if not lines:
         raise RequestError(
             f"{scenario.name}: there is no target that moves, so no line to design a quantisation for"
@@ -119,7 +117,7 @@ def scenario_design(name: str, assignments: Sequence[str], demands: Demands) -> 
     """
     set_name, _, scenario_name = name.partition(":")
     scenario = changed(chosen_scenario(load_set(set_name), scenario_name or None), assignments)
-    names = tuple(called for called, _ in moving_targets(scenario))
+    names = tuple(scenario.targets[index].name or f"target {index}" for index in moving_targets(scenario))
     return Design(question_of(scenario, demands), (scenario,), names)
 
 
@@ -176,9 +174,7 @@ def _question(scenario: Scenario, lines: tuple[TargetLine, ...], demands: Demand
 
 
 def _clutter(scenario: Scenario) -> Clutter:
-    return Clutter(
-        tuple(
-            ClutterSource(source.rate * scenario.scans, (source.region or scenario.region).box)
-            for source in scenario.clutter
-        )
+    sources = tuple(
+        ClutterSource(source.expected(scenario.scans), scenario.area(source)) for source in scenario.clutter
     )
+    return Clutter(sources, all(isinstance(source, ExactClutter) for source in scenario.clutter))

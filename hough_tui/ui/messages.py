@@ -8,6 +8,7 @@ from textual.message import Message
 
 if TYPE_CHECKING:
     from algorithms.parameters import Path
+    from hough_tui.experiments.plan import Cell
 
 
 class SetShown(Message):
@@ -66,19 +67,14 @@ class ElementRemoved(Message):
 
 
 class TrialOpened(Message):
-    """A trial is to be shown in Look.
+    """A trial of a run is to be shown in Look.
 
     Attributes
     ----------
-    scenario : the scenario with every swept value put in
-    entry, parameters : the initiator to look at, its parameters resolved
-    seed, trial : which draw
+    cell : what ran: scenario, initiator, parameters and criterion, with every swept value put in
+    trial : which draw
     """
 
-    def __init__(self, scenario: Any, entry: Any, parameters: Any, seed: int, trial: int) -> None:
+    def __init__(self, cell: Cell, trial: int) -> None:
         super().__init__()
-        self.scenario = scenario
-        self.entry = entry
-        self.parameters = parameters
-        self.seed = seed
-        self.trial = trial
+        self.cell, self.trial = cell, trial

@@ -279,6 +279,8 @@ def test_a_grid_too_large_for_memory_is_refused_with_its_size(refusal, write, gi
 SET_COMMANDS = {
     "batch": ("batch", "{}", "--csv", "rates.csv"),
     "simulate": ("simulate", "{}", "--output", "plots.csv"),
+    "advise": ("advise", "{}"),
+    "advise apply": ("advise", "course-report:two-crossing", "--apply", "{}"),
     "validate": ("validate", "{}"),
     "initiate": ("initiate", "plots-in.csv", "--like", "{}", "--assigned", "out.csv"),
 }

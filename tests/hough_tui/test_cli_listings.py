@@ -10,6 +10,7 @@ from pydantic import BaseModel
 
 from algorithms.initiators.registry import initiators
 from hough_tui.cli import main
+from hough_tui.experiments.published.comparison import TABLES
 from scenarios.bundled import bundled_paths
 from scenarios.files import load_set
 from scenarios.marked_yaml import read
@@ -239,5 +240,5 @@ def test_a_published_table_stands_beside_what_is_measured(cli):
     assert row["ci95"][0] <= row["measured"] <= row["ci95"][1]
     assert row["consistent"] is True
     every = json.loads(cli("reproduce", "--trials", 2, "--json"))
-    assert [table["table"] for table in every["tables"]] == ["course-2-1", "course-2-2"]
+    assert [table["table"] for table in every["tables"]] == list(TABLES)
     assert "standard, 15 scans" in cli("reproduce", "course-2-1", "--trials", 20)

@@ -57,7 +57,7 @@ def test_the_command_line_itself_imports_nothing_heavy():
 
 def test_help_imports_nothing_heavy():
     modules, out = loaded("--help")
-    for command in ("batch", "initiate", "simulate", "reproduce", "sets", "initiators", "results"):
+    for command in ("batch", "initiate", "simulate", "advise", "reproduce", "sets", "initiators", "results"):
         assert command in out
     assert not modules & (HEAVY | {"pydantic"})
 
@@ -67,6 +67,7 @@ def test_help_imports_nothing_heavy():
     [
         (["batch", "--help"], ["--trials", "--workers", "--json"]),
         (["initiate", "-h"], ["--initiator", "--accumulator"]),
+        (["advise", "--help"], ["--check", "--apply"]),
         (["sets", "--help"], ["--json"]),
         (["results", "--help"], ["list", "show"]),
     ],

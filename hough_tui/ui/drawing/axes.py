@@ -11,6 +11,7 @@ from rich.style import Style
 from textual.strip import Strip
 
 from hough_tui.ui.drawing.palette import Palette, ink
+from hough_tui.ui.drawing.shortening import cut
 from hough_tui.ui.drawing.viewport import Limits
 
 DECIMAL = (1.0, 2.0, 5.0, 10.0)
@@ -235,14 +236,18 @@ def framed(
 def foot(
     parts: Sequence[tuple[str, Style | None]], right: Sequence[tuple[str, Style | None]], width: int
 ) -> Strip:
-    """Return a line of words, some at its left and, where there is room, some at its right."""
+    """Return a line of words, some at its left and, where there is room, some at its right.
+
+    Where even those at the left have no room, whole words are left out.
+    """
     kept: list[Segment] = []
     room = width
     for words, style in parts:
-        shown = words[:room]
-        if shown:
-            kept.append(Segment(shown, style))
-            room -= len(shown)
+        shown = words if len(words) <= room else cut(words, room)
+        kept.append(Segment(shown, style))
+        room -= len(shown)
+        if shown != words:
+            break
     length = sum(len(words) for words, _ in right)
     if right and length + (2 if kept else 0) <= room:
         kept.append(Segment(" " * (room - length)))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from rich.text import Text
 from textual.binding import Binding
 from textual.message import Message
@@ -60,6 +62,18 @@ class Menu(Select[str], inherit_bindings=False):
     """A choice, whose menu is opened on purpose only: up and down go to the fields around it."""
 
     BINDINGS = [Binding("enter,space", "show_overlay", "Open the menu", show=False, id="menu.open")]
+
+    def _watch_value(self, value: Any) -> None:
+        # Textual's own looks for a label that a menu does not have before it is laid out.
+        if self.query("SelectCurrent > #label"):
+            super()._watch_value(value)
+        else:
+            self._value = value
+            self.call_after_refresh(self._show_value)
+
+    def _show_value(self) -> None:
+        with self.prevent(Select.Changed):
+            super()._watch_value(self.value)
 
 
 def input_for(field: FieldDescription, text: str, placeholder: str, classes: str) -> Input:

@@ -97,8 +97,9 @@ class LookView(Widget):
         if self._given is not None:
             names = [found.name for found in self._given.scenarios]
             entries = [found.name for found in self._given.initiators]
-            self._scenario = names.index(opened.scenario.name) if opened.scenario.name in names else 0
-            self._entry = entries.index(opened.entry.name) if opened.entry.name in entries else 0
+            scenario, entry = opened.cell.scenario.name, opened.cell.entry.name
+            self._scenario = names.index(scenario) if scenario in names else 0
+            self._entry = entries.index(entry) if entry in entries else 0
         self._ask()
 
     def choose(self, index: int) -> None:
@@ -137,7 +138,7 @@ class LookView(Widget):
             return
         self._is_double = not self._is_double
         if self._is_double:
-            await self.query_one("#looks").mount(LookPanel())
+            await self.query_one("#looks").mount(LookPanel("second"))
         else:
             await self.query(LookPanel).last().remove()
         self._arrange()
@@ -159,18 +160,20 @@ class LookView(Widget):
         if self._given is None:
             return
         if not self._given.initiators:
-            self.query(LookPanel).first().query_one("#caption").update("The set has no initiators.")  # type: ignore[attr-defined]
+            self.query(LookPanel).first().refuse("The set has no initiators.")
             return
+        chosen: list[tuple[InitiatorEntry, Parameters | None]]
         if self._opened is not None:
-            scenario, seed = self._opened.scenario, self._opened.seed
-            chosen = [(self._opened.entry, self._opened.parameters)]
+            cell, swept = self._opened.cell, self._opened.cell.swept
+            scenario, seed, criterion = cell.scenario, cell.experiment.seed, cell.criterion
+            chosen = [(cell.entry, cell.parameters)]
         else:
-            scenario = self._given.scenarios[self._scenario]
-            seed = seed_of(self._given, scenario)
+            scenario, swept = self._given.scenarios[self._scenario], None
+            seed, criterion = seed_of(self._given, scenario), criterion_of(self._given, scenario)
             chosen = [(self._given.initiators[self._entry], None)]
         if self._is_double:
             chosen.append((self._given.initiators[(self._entry + 1) % len(self._given.initiators)], None))
-        self._work(scenario, seed, self._trial, chosen, criterion_of(self._given, scenario))
+        self._work(scenario, seed, self._trial, chosen, criterion, swept)
 
     @work(thread=True, exclusive=True, exit_on_error=False, group="look", name="look")
     def _work(
@@ -180,6 +183,7 @@ class LookView(Widget):
         trial: int,
         chosen: list[tuple[InitiatorEntry, Parameters | None]],
         criterion: MatchCriterion | None,
+        swept: dict[str, int | float] | None,
     ) -> None:
         """Draw the trial and let the initiators work on it."""
         worker = get_current_worker()
@@ -194,14 +198,14 @@ class LookView(Widget):
             except RequestError as error:
                 found.append(f"{entry.name}: {error}")
         if not worker.is_cancelled:
-            self.app.call_from_thread(self._show, found)
+            self.app.call_from_thread(self._show, found, swept)
 
-    def _show(self, found: list[TrialLook | str]) -> None:
+    def _show(self, found: list[TrialLook | str], swept: dict[str, int | float] | None) -> None:
         for panel, seen in zip(self.query(LookPanel), found, strict=False):
             if isinstance(seen, str):
-                panel.query_one("#caption").update(seen)  # type: ignore[attr-defined]
+                panel.refuse(seen)
             else:
-                panel.show(seen)
+                panel.show(seen, swept)
 
 
 def criterion_of(given: ScenarioSet, scenario: Scenario) -> MatchCriterion | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -16,8 +17,12 @@ from textual.widgets import Static
 from algorithms.hough.inspection import columns_of, voters
 from algorithms.scoring import DUPLICATE, FALSE, FINDER
 from hough_tui.reports.documents import track_csv
+from hough_tui.reports.metrics import field_name
+from hough_tui.reports.numerals import as_given
 from hough_tui.ui.copying import copy
+from hough_tui.ui.drawing.shortening import Part
 from hough_tui.ui.screens.why_peak import WhyPeak
+from hough_tui.ui.widgets.caption import Caption
 from hough_tui.ui.widgets.heatmap import Heatmap
 from hough_tui.ui.widgets.heatmap_scene import HeatmapScene
 from hough_tui.ui.widgets.plane import Plane
@@ -39,7 +44,7 @@ class LookPanel(Widget):
 
     DEFAULT_CSS = """
     LookPanel { layout: vertical; height: 1fr; width: 1fr; }
-    LookPanel #caption { height: 1; color: $text-muted; padding: 0 1; }
+    LookPanel.second { border-left: solid $panel; }
     LookPanel #panels { height: 1fr; }
     LookPanel #plane-side { width: 1fr; height: 1fr; }
     LookPanel #vote-side { width: 1fr; height: 1fr; }
@@ -65,14 +70,14 @@ class LookPanel(Widget):
     layout_kind: reactive[str] = reactive("wide")
     panel: reactive[str] = reactive("plane")
 
-    def __init__(self) -> None:
-        super().__init__()
+    def __init__(self, classes: str | None = None) -> None:
+        super().__init__(classes=classes)
         self._seen: TrialLook | None = None
         self._marked: tuple[int, int] | None = None
 
     def compose(self) -> ComposeResult:
         """Lay out the three panels."""
-        yield Static("", id="caption", markup=False)
+        yield Caption()
         with Horizontal(id="panels"):
             with Vertical(id="plane-side"):
                 yield Plane()
@@ -81,11 +86,15 @@ class LookPanel(Widget):
                 yield Static("This initiator has no accumulator.", id="no-accumulator", markup=False)
                 yield TrackGrid()
 
-    def show(self, seen: TrialLook) -> None:
-        """Show what an initiator made of a draw."""
+    def refuse(self, why: str) -> None:
+        """Say why there is nothing to show."""
+        self.query_one(Caption).tell(why)
+
+    def show(self, seen: TrialLook, swept: Mapping[str, int | float] | None = None) -> None:
+        """Show what an initiator made of a draw; `swept` is said of one of a run."""
         is_other_draw = self._seen is None or self._seen.picture is not seen.picture
         self._seen = seen
-        self.query_one("#caption", Static).update(caption(seen))
+        self.query_one(Caption).tell(*caption(seen, swept))
         plane = self.query_one(Plane)
         plane.show(plane_scene(seen))
         if is_other_draw:
@@ -179,20 +188,34 @@ class LookPanel(Widget):
         plane.highlight(seen.tracks.plots[index])
 
 
-def caption(seen: TrialLook) -> str:
-    """Return one line that says what is seen."""
-    scenario = seen.picture.scenario
-    text = f"{seen.entry.name} on {scenario.name}, trial {seen.picture.trial}: {seen.total:,} tracks"
-    if seen.total > len(seen.tracks):
-        text += f", of which the {len(seen.tracks)} strongest are shown"
-    if seen.state is not None:
-        counts = [(name, int((seen.state == state).sum())) for state, name in STATES.items()]
-        text += (
-            " (" + ", ".join(f"{count} {name}" for name, count in counts if count) + ")"
-            if any(count for _, count in counts)
-            else ""
+def caption(seen: TrialLook, swept: Mapping[str, int | float] | None = None) -> tuple[Part, ...]:
+    """Return what is seen, for one line.
+
+    Parameters
+    ----------
+    seen : a trial
+    swept : the swept values of the run that it is of; None for a trial of the set as it is
+    """
+    words = f"trial {seen.picture.trial}: {seen.total:,} track{'s' * (seen.total != 1)}"
+    parts = [
+        Part(
+            f"{seen.entry.name} on {seen.picture.scenario.name}, {words}",
+            short=f"{seen.entry.name}, {words}",
         )
-    return f"{text} · {len(seen.picture.plots)} plots · {seen.seconds * 1e3:.2f} ms"
+    ]
+    if swept is not None:
+        values = ", ".join(f"{field_name(key)} {as_given(value)}" for key, value in swept.items())
+        parts.append(Part(f"of a run: {values}" if values else "of a run", 1))
+    if seen.total > len(seen.tracks):
+        shown = f"the {len(seen.tracks)} strongest"
+        parts.append(Part(f"{shown} are shown", 3, shown))
+    if seen.state is not None and len(seen.tracks):
+        counts = [(STATES[state], int((seen.state == state).sum())) for state in STATES]
+        words = ", ".join(f"{count} {name}" for name, count in counts if count)
+        parts.append(Part(words, 2, words.replace("duplicate", "dup.")))
+    parts.append(Part(f"{len(seen.picture.plots):,} plots", 4))
+    parts.append(Part(f"{seen.seconds * 1e3:.2f} ms", 5))
+    return tuple(parts)
 
 
 def plane_scene(seen: TrialLook) -> PlaneScene:

@@ -15,6 +15,7 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 from algorithms.parameters import Problem
+from hough_tui.ui.drawing.shortening import BETWEEN
 from hough_tui.ui.screens.question import telling
 from hough_tui.ui.views.pace import Pace, duration
 from hough_tui.ui.views.running import Asked, Ended, Event, Filled, Running, Started, keep
@@ -328,6 +329,8 @@ class MonteCarloView(Widget):
             self.query_one(Hint).update(asked)
             return
         self.query_one(Hint).update(asked_text(asked))
-        is_stale = self._asked is not None and self._asked.given != asked.given
-        changed = " · the set has changed since" if is_stale else ""
-        line.tell(self._result + changed if self._result else f"{asked_words(asked)} · r runs it")
+        result, is_stale = self._result, self._asked is not None and self._asked.given != asked.given
+        if result and is_stale:
+            what, *others = result.split(BETWEEN)
+            result = BETWEEN.join((what, "the set has changed since", *others))
+        line.tell(result or f"{asked_words(asked)}{BETWEEN}r runs it")

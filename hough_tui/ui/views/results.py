@@ -15,11 +15,13 @@ from textual.widgets import DataTable, Static
 
 from algorithms.errors import RequestError
 from hough_tui.experiments.store import FolderStore, Run
+from hough_tui.ui.drawing.shortening import ranked
 from hough_tui.ui.screens.comparison import ComparisonScreen
 from hough_tui.ui.screens.export import Document, ExportScreen
 from hough_tui.ui.screens.question import Question, telling
 from hough_tui.ui.views.kept import KeptSummary, summaries
 from hough_tui.ui.views.shown_run import KeptRun
+from hough_tui.ui.widgets.caption import Caption
 from hough_tui.ui.widgets.rate_panel import RatePanel
 from hough_tui.ui.widgets.run_list import RunList
 from scenarios.model import ScenarioSet
@@ -41,7 +43,6 @@ class ResultsView(Widget):
     DEFAULT_CSS = """
     ResultsView { layout: vertical; height: 1fr; background: $surface; }
     ResultsView #list { height: 1fr; }
-    ResultsView #about { height: 1; padding: 0 1; color: $text-muted; }
     ResultsView RunList { height: 1fr; }
     ResultsView #run { height: 1fr; display: none; }
     ResultsView #called { height: 1; padding: 0 1; background: $panel; text-style: bold; }
@@ -93,7 +94,7 @@ class ResultsView(Widget):
     def compose(self) -> ComposeResult:
         """Lay out the list, and the run that is shown."""
         with Vertical(id="list"):
-            yield Static(id="about", markup=False)
+            yield Caption(id="about")
             yield RunList()
         with Vertical(id="run"):
             yield Static(id="called", markup=False)
@@ -153,7 +154,7 @@ class ResultsView(Widget):
             text = f"{count:,} runs · {len(runs.marked)} marked · = compares, Delete deletes them"
         else:
             text = f"{count:,} run{'s' * (count != 1)} · Enter shows, Space marks, e exports, Delete deletes"
-        self.query_one("#about", Static).update(text)
+        self.query_one("#about", Caption).tell(*ranked(text))
 
     # One run
 

@@ -11,13 +11,14 @@ from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.reactive import reactive
 from textual.widget import Widget
-from textual.widgets import Static
 from textual.worker import get_current_worker
 
 from algorithms.parameters import Problem
 from hough_tui.experiments.choice import seed_of
 from hough_tui.experiments.look import Picture, picture
+from hough_tui.ui.drawing.shortening import Part
 from hough_tui.ui.forms.model_form import ModelForm
+from hough_tui.ui.widgets.caption import Caption
 from hough_tui.ui.widgets.plane import Plane
 from hough_tui.ui.widgets.plane_scene import PlaneScene
 from scenarios.model import Scenario, ScenarioSet
@@ -39,7 +40,6 @@ class ScenarioView(Widget):
     )
     DEFAULT_CSS = """
     ScenarioView { layout: vertical; height: 1fr; }
-    ScenarioView .caption { height: 1; color: $text-muted; padding: 0 1; }
     ScenarioView #scenario-parts { height: 1fr; }
     ScenarioView #scenario-picture { width: 1fr; height: 1fr; }
     ScenarioView ModelForm { width: 1fr; }
@@ -63,7 +63,7 @@ class ScenarioView(Widget):
 
     def compose(self) -> ComposeResult:
         """Lay out the form beside the picture."""
-        yield Static("", classes="caption", markup=False)
+        yield Caption()
         with Horizontal(id="scenario-parts"):
             yield ModelForm()
             with Vertical(id="scenario-picture"):
@@ -149,9 +149,10 @@ class ScenarioView(Widget):
 
     def _show(self, drawn: Picture) -> None:
         scenario = drawn.scenario
-        self.query_one(".caption", Static).update(
-            f"{scenario.name}, trial {drawn.trial} of seed {drawn.seed}: {len(drawn.plots)} plots"
-            " · Ctrl+N another draw · F9 form or picture"
+        self.query_one(Caption).tell(
+            f"{scenario.name}, trial {drawn.trial} of seed {drawn.seed}: {len(drawn.plots):,} plots",
+            Part("Ctrl+N another draw", 1),
+            Part("F9 form or picture", 2, "F9 turns"),
         )
         self.query_one(Plane).show(
             PlaneScene(

@@ -28,13 +28,16 @@ class RowTrials:
     Attributes
     ----------
     cell : what ran
-    numbers : int64 (trials,), which trials of the experiment they are
-    columns : what each of them gave
+    columns : which trials of the experiment they are, and what each of them gave
     """
 
     cell: Cell
-    numbers: NDArray[np.int64]
     columns: TrialColumns
+
+    @property
+    def numbers(self) -> NDArray[np.int32]:
+        """Which trials of the experiment they are, int32 (trials,)."""
+        return self.columns.trial
 
 
 class ShownRun(ABC):
@@ -94,13 +97,10 @@ class LiveRun(ShownRun):
 
     def trials(self, index: int) -> RowTrials:
         cell = self.job.plan.cells[index]
-        (numbers,) = np.nonzero(self._finished(index))
-        if not len(numbers):
+        finished, columns = self._finished(index), self.job.columns[index]
+        if not finished.any():
             raise RequestError("no trial of this row is finished yet")
-        columns = self.job.columns[index]
-        if len(numbers) < cell.experiment.trials:
-            columns = columns.part(numbers)
-        return RowTrials(cell, numbers, columns)
+        return RowTrials(cell, columns if finished.all() else columns.part(finished))
 
     def document(self) -> dict[str, Any]:
         return self.found().document
@@ -149,12 +149,16 @@ class KeptRun(ShownRun):
                 "this row's scenario and initiator cannot be told from the sets that were kept with the "
                 "run, so its trials cannot be drawn again"
             )
-        if row["trials"] < cell.experiment.trials:
-            raise RequestError(
-                f"the run was cancelled after {row['trials']:,} of this row's {cell.experiment.trials:,} "
-                "trials, and which ones they were is not kept; run it again to open its trials"
-            )
-        return RowTrials(cell, np.arange(row["trials"]), trial_columns(self.run.columns[index]))
+        arrays = dict(self.run.columns[index])
+        if "trial" not in arrays:  # as in runs of the first versions
+            if row["trials"] < cell.experiment.trials:
+                raise RequestError(
+                    f"the run was cancelled after {row['trials']:,} of this row's "
+                    f"{cell.experiment.trials:,} trials, and the version that kept it did not keep "
+                    "which ones they were; run it again to open its trials"
+                )
+            arrays["trial"] = np.arange(row["trials"], dtype=np.int32)
+        return RowTrials(cell, trial_columns(arrays))
 
     def document(self) -> dict[str, Any]:
         return self.run.document

@@ -9,12 +9,14 @@ from textual import on
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
-from textual.widgets import Button, Static
+from textual.widgets import Button
 
 from algorithms.parameters import Problem
+from hough_tui.ui.drawing.shortening import Part
 from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.messages import ElementAdded, ElementRemoved
 from hough_tui.ui.naming import free_name
+from hough_tui.ui.widgets.caption import Caption
 from scenarios.model import Experiment, ScenarioSet
 
 LEAST_PLOTS = 3
@@ -27,8 +29,7 @@ class ExperimentForm(Vertical):
     DEFAULT_CSS = """
     ExperimentForm { height: 1fr; }
     ExperimentForm Horizontal { height: 1; padding: 0 1; }
-    ExperimentForm Horizontal Static { width: 1fr; color: $text-muted; }
-    ExperimentForm Horizontal Static { text-wrap: nowrap; text-overflow: ellipsis; }
+    ExperimentForm Caption { padding: 0; }
     ExperimentForm Button { min-width: 8; margin-left: 1; }
     """
     ACTIONS: ClassVar[dict[str, str]] = {"add": "New", "copy": "Copy", "remove": "Remove"}
@@ -48,7 +49,7 @@ class ExperimentForm(Vertical):
     def compose(self) -> ComposeResult:
         """Lay out what can be done to the list above the form."""
         with Horizontal():
-            yield Static("", markup=False)
+            yield Caption()
             for action, label in self.ACTIONS.items():
                 yield Button(label, id=action, compact=True)
         yield ModelForm()
@@ -60,11 +61,10 @@ class ExperimentForm(Vertical):
         form.display = chosen is not None
         for action in ("copy", "remove"):
             self.query_one(f"#{action}", Button).disabled = chosen is None
-        self.query_one(Static).update(
-            "Names are those of the tree; a sweep: scans: 5, 10, 15"
-            if chosen
-            else "The set has no experiment"
-        )
+        if chosen is None:
+            self.query_one(Caption).tell("The set has no experiment")
+        else:
+            self.query_one(Caption).tell(Part("Names as in the tree", 1), "a sweep: scans: 5, 10, 15")
         if chosen is not None:
             self._index = given.experiments.index(chosen)
             unit = given.chosen_scenarios(chosen)[0].unit

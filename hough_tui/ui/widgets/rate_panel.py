@@ -209,8 +209,7 @@ class RatePanel(Widget):
 
         def opened(trial: int | None) -> None:
             if trial is not None:
-                given = cell.scenario, cell.entry, cell.parameters
-                self.post_message(TrialOpened(*given, cell.experiment.seed, trial))
+                self.post_message(TrialOpened(cell, trial))
 
         self.app.push_screen(TrialsScreen(event.table, event.order), opened)
 

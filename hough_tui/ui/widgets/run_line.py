@@ -8,6 +8,8 @@ from rich.text import Text
 from textual.reactive import reactive
 from textual.widget import Widget
 
+from hough_tui.ui.drawing.shortening import fitted, ranked
+
 BAR = 20
 """Cells of the bar."""
 
@@ -30,7 +32,7 @@ class RunLine(Widget):
 
         Parameters
         ----------
-        text : what to say
+        text : what to say; of its parts, between dots, the last are left out where there is no room
         share : how much of the run is done, in [0, 1]; None for no bar
         is_problem : whether it is a reason why nothing runs
         """
@@ -39,9 +41,9 @@ class RunLine(Widget):
 
     def render(self) -> Text:
         """Return the line."""
-        line = Text(no_wrap=True, overflow="ellipsis")
+        line = Text(no_wrap=True)
         if self.share is not None:
             full = round(BAR * self.share)
             line.append("━" * full, self.get_component_rich_style("run-line--bar", partial=True))
             line.append("─" * (BAR - full) + " ", "dim")
-        return line.append(self.text)
+        return line.append(fitted(ranked(self.text), self.size.width - line.cell_len))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from textual_plotext.plot import Plot
 
 from hough_tui.reports.dots import Axis, dotted, span, ticks
+from hough_tui.ui.drawing.shortening import Part, fitted
 
 DOTS_ACROSS = 8
 """Of so many trials a column of cells one each is drawn; more would be a solid band."""
@@ -18,7 +19,7 @@ DOTS, MEAN = 67, 208
 
 
 def trial_chart(
-    called: str, numbers: NDArray[np.int64], ratio: NDArray[np.float64], width: int, height: int
+    called: str, numbers: NDArray[np.int32], ratio: NDArray[np.float64], width: int, height: int
 ) -> str:
     """Return a chart of a ratio in per cent against the number of the trial, and its mean so far.
 
@@ -60,7 +61,12 @@ def trial_chart(
     means = 100.0 * np.cumsum(ratio, dtype=np.float64)[places] / (places + 1)
     line_x, line_y = across.snapped(numbers[places].astype(np.float64)), up.snapped(means)
     figure.scatter(line_x.tolist(), line_y.tolist(), marker="━", color=MEAN)
-    shown = "" if step == 1 else f" · one of {step:,} drawn"
-    title = f"false % by trial · ━ mean so far, in the end {means[-1]:.1f} · {called}{shown}"
+    title = [
+        Part("false % by trial"),
+        Part(f"━ mean so far, in the end {means[-1]:.1f}", 2, f"━ mean {means[-1]:.1f}"),
+        Part(called, 1),
+    ]
+    if step > 1:
+        title.append(Part(f"one of {step:,} drawn", 4, f"1 of {step:,}"))
     text = figure.build().rstrip("\n")
-    return f"{title}\n{text}"
+    return f"{fitted(title, width)}\n{text}"

@@ -83,8 +83,12 @@ def test_several_regions_and_any_grid_are_the_sum_over_the_cells(found, votes, o
     # Fine columns, so that the density is straight within almost every cell.
     grid = Grid(6, 20_000, rho_min, 0.01, origin, offset)
     density = clutter.density(grid.theta[:, None], grid.rho, grid.origin)
-    expected = stats.poisson.sf(votes - 1, grid.rho_step * density).sum()
-    assert false_cells(clutter, grid, votes) == pytest.approx(expected, rel=2e-3, abs=1e-9)
+    tail = stats.poisson.sf(votes - 1, grid.rho_step * density)
+    # Along the axes the density jumps at both ends of each region: the sum takes the cell there whole or
+    # not at all, the integral in part.
+    jumps = np.isclose(np.sin(2.0 * grid.theta), 0.0)
+    margin = 2 * len(found) * tail[jumps].max(axis=1).sum()
+    assert false_cells(clutter, grid, votes) == pytest.approx(tail.sum(), rel=2e-3, abs=margin + 1e-9)
 
 
 def test_the_density_holds_all_plots_and_is_that_of_draws():

@@ -187,7 +187,7 @@ def test_counted_cells_are_those_of_the_voting_kernel(velocity, row):
     line = TargetLine.of_motion(first, velocity, 9, 4.0, (0.1, 0.1))
     grid = Grid(30, 200, -75.0, 0.75, (50.0, 50.0))
     shifts = random.random((60, 2))
-    found = count_cells(chunk, grid, np.array([line.theta]), np.array([line.middle]), shifts, 40)
+    found = count_cells(chunk, grid, np.array([line.theta]), np.full((60, 1, 2), line.middle), shifts, 40)
     rows = set()
     for trial in range(60):
         moved = Grid(
@@ -219,7 +219,12 @@ def test_the_prediction_is_what_trials_give():
     for theta_bins, rho_step in ((40, 0.5), (150, 0.3)):
         grid = Grid(theta_bins, math.ceil(142 / rho_step), -71.0, rho_step, (50.0, 50.0))
         counts = count_cells(
-            chunk, grid, np.array([line.theta]), np.array([line.middle]), random.random((trials, 2)), 60
+            chunk,
+            grid,
+            np.array([line.theta]),
+            np.full((trials, 1, 2), line.middle),
+            random.random((trials, 2)),
+            60,
         )
         for votes in (6, 8, 10):
             expected = predict(question, grid, votes).p_detection

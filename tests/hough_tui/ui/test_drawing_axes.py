@@ -137,7 +137,7 @@ def test_words_at_the_foot_make_room_from_the_right():
     left, right = [("left", None), (" more", Style(bold=True))], [("right", None)]
     assert foot(left, right, 20).text == "left more      right"
     assert foot(left, right, 15).text == "left more      "
-    assert foot(left, right, 6).text == "left m"
+    assert foot(left, right, 6).text == "left… "
     assert foot([], [], 4).text == "    "
     assert foot([], right, 5).text == "right"
     assert all(foot(left, right, width).cell_length == width for width in range(1, 30))

@@ -96,6 +96,11 @@ def test_first_run_edit_look_run_worst_trial_save_and_reopen(drive, home):
         assert len(seen.tracks) == columns.tracks[worst]
         assert int((seen.state == 0).sum()) == false[worst]
         await user.sees(f"standard on two-crossing, trial {worst}: {columns.tracks[worst]} tracks")
+        # It says that it is not the set as it is; another initiator of the set looks at that again.
+        await user.sees("tracks · of a run: scans 5 · ")
+        await user.press("i")
+        await user.sees("sequential on two-crossing")
+        assert "of a run" not in user.text
 
         # A file of one's own.
         await user.press("ctrl+s")

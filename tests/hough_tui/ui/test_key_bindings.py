@@ -16,7 +16,7 @@ from hough_tui.ui.key_bindings import declared_bindings, require_known
 def test_every_binding_has_an_id_and_a_description(name, bindings):
     for binding in bindings:
         assert isinstance(binding, Binding), name
-        assert binding.id and re.fullmatch(r"[a-z-]+\.[a-z_-]+", binding.id), binding
+        assert re.fullmatch(r"[a-z-]+\.[a-z_-]+", binding.id or ""), binding
         assert binding.description, binding
 
 

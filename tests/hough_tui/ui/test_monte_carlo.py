@@ -314,12 +314,12 @@ def test_the_worst_trial_of_a_row_is_opened():
         await user.until(lambda: user.app.opened)
         (opened,) = user.app.opened
         cell = user.view._live.job.plan.cells[3]
-        assert (opened.scenario, opened.entry, opened.parameters) == (
+        assert (opened.cell.scenario, opened.cell.entry, opened.cell.parameters) == (
             cell.scenario,
             cell.entry,
             cell.parameters,
         )
-        assert (opened.seed, opened.trial, opened.scenario.scans) == (7, int(worst), 5)
+        assert (opened.cell.experiment.seed, opened.trial, opened.cell.scenario.scans) == (7, int(worst), 5)
         assert not isinstance(user.app.screen, TrialsScreen)
 
     drive(journey)

@@ -7,7 +7,7 @@ from algorithms.errors import RequestError
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import result
-from hough_tui.experiments.store import FolderStore
+from hough_tui.experiments.store import FolderStore, Run
 from hough_tui.ui.views.pace import Pace, duration
 from hough_tui.ui.views.running import Asked, Ended, Filled, Running, Started
 from hough_tui.ui.views.shown_run import KeptRun, LiveRun
@@ -100,19 +100,45 @@ def test_a_kept_run_opens_its_trials(given):
         assert trials.numbers.tolist() == list(range(30))
 
 
-def test_a_kept_run_in_part_says_why_its_trials_stay_closed(given):
-    job = Job(plan_run([given], experiments=["modified"], trials=TRIALS), 2)
-    while not job.progress.done.any():
-        job.wait(0.001)
-    job.cancel()
-    assert job.wait(60)
-    kept = KeptRun("part", result(job))
-    for index, row in enumerate(kept.rows):
-        if row["trials"] < TRIALS:
-            with pytest.raises(RequestError, match="cancelled after"):
-                kept.trials(index)
-        else:
-            assert len(kept.trials(index).numbers) == TRIALS
+@pytest.fixture
+def in_part(given):
+    """A run of which every second chunk of trials is finished, as the run that was finished, and as kept."""
+    whole = Job(plan_run([given], experiments=["modified"], trials=TRIALS), 2)
+    assert whole.wait()
+    for finished in whole._finished:
+        finished[: TRIALS // 3] = False
+        finished[TRIALS // 2 : TRIALS // 2 + 5] = False
+    whole.progress.done[:] = [finished.sum() for finished in whole._finished]
+    name = FolderStore().add(result(whole))
+    return whole, FolderStore().load(name)
+
+
+def test_a_run_kept_in_part_opens_the_trials_that_it_has(in_part):
+    whole, run = in_part
+    assert run.document["complete"] is False
+    kept = KeptRun("part", run)
+    for index, finished in enumerate(whole._finished):
+        trials = kept.trials(index)
+        assert trials.numbers.tolist() == np.flatnonzero(finished).tolist()
+        np.testing.assert_array_equal(trials.columns.tracks, whole.columns[index].tracks[trials.numbers])
+        assert trials.numbers[0] == TRIALS // 3
+
+
+def test_a_run_in_part_of_the_first_versions_says_why_its_trials_stay_closed(in_part):
+    _, run = in_part
+    old = tuple({key: values for key, values in row.items() if key != "trial"} for row in run.columns)
+    kept = KeptRun("part", Run(run.sets, run.document, old))
+    with pytest.raises(RequestError, match="cancelled after"):
+        kept.trials(0)
+
+
+def test_a_whole_run_of_the_first_versions_opens(given):
+    job = Job(plan_run([given], experiments=["modified"], trials=7), 2)
+    assert job.wait()
+    run = result(job)
+    old = tuple({key: values for key, values in row.items() if key != "trial"} for row in run.columns)
+    kept = KeptRun("old", Run(run.sets, run.document, old))
+    assert kept.trials(0).numbers.tolist() == list(range(7))
 
 
 def test_a_row_that_the_sets_do_not_hold_stays_closed(given):

@@ -154,6 +154,7 @@ def many(cell, count):
     found = random.random((count, 2)) < 0.9
     errors = np.where(found, random.normal(size=(count, 2)), np.nan).astype(np.float32)
     columns = TrialColumns(
+        np.arange(count, dtype=np.int32),
         found,
         random.integers(1, 300, count).astype(np.int32),
         random.integers(0, 50, count).astype(np.int32),
@@ -163,7 +164,7 @@ def many(cell, count):
         np.zeros(count, np.int64),
         random.random((count, 2)) < 0.1,
     )
-    return TrialTable(RowTrials(cell, np.arange(count), columns))
+    return TrialTable(RowTrials(cell, columns))
 
 
 def test_failed_trials_stand_first(cell):

@@ -18,6 +18,7 @@ from hough_tui.ui.screens.export import ExportScreen
 from hough_tui.ui.screens.question import Question
 from hough_tui.ui.screens.trials import TrialsScreen
 from hough_tui.ui.views.results import ResultsView
+from hough_tui.ui.widgets.caption import Caption
 from hough_tui.ui.widgets.rate_grid import RateGrid
 from hough_tui.ui.widgets.rate_panel import RatePanel
 from hough_tui.ui.widgets.run_list import RunList
@@ -99,7 +100,7 @@ class Driver:
 
     @property
     def about(self):
-        return str(self.view.query_one("#about", Static).content)
+        return str(self.view.query_one("#about", Caption).render())
 
 
 def drive(journey, size=(160, 48)):
@@ -177,8 +178,8 @@ def test_a_run_is_shown_again_and_its_trials_open(kept, runs):
         await user.pilot.press("enter")
         await user.until(lambda: user.app.opened)
         (opened,) = user.app.opened
-        assert (opened.trial, opened.seed) == (trial, document["seed"])
-        assert (opened.scenario.scans, opened.entry.name) == (5, "sequential")
+        assert (opened.trial, opened.cell.experiment.seed) == (trial, document["seed"])
+        assert (opened.cell.scenario.scans, opened.cell.entry.name) == (5, "sequential")
 
     drive(journey)
 
