@@ -84,9 +84,7 @@ SCENES: dict[str, RangeDopplerScene] = {
         tuple(ExtendedTarget(at, at, correlation=0.7) for at in (15.0, 45.0, 75.0))
     ),
     "same range": RangeDopplerScene((ExtendedTarget(60, 25), ExtendedTarget(60, 65))),
-    "interference": RangeDopplerScene(
-        (ExtendedTarget(30, 30), ExtendedTarget(75, 65)), interference=10
-    ),
+    "interference": RangeDopplerScene((ExtendedTarget(30, 30), ExtendedTarget(75, 65)), interference=10),
     "close": RangeDopplerScene((ExtendedTarget(50, 40), ExtendedTarget(70, 48))),
 }
 """The seven kinds of scene by which methods of clustering are compared."""
@@ -142,9 +140,7 @@ def draw_scene(scene: RangeDopplerScene, seed: int, trial: int, trials: int = 1)
     seed : of the draws, 0 to 2⁶⁴ − 1
     trial, trials : the first one, and how many
     """
-    given = [
-        (target.range, target.doppler, *target.spread, target.correlation) for target in scene.targets
-    ]
+    given = [(target.range, target.doppler, *target.spread, target.correlation) for target in scene.targets]
     counts = np.array([target.points for target in scene.targets], np.int64)
     bounds = np.array(scene.region, float)
     points, origin, centres = _draw(

@@ -46,8 +46,8 @@ def compared_sets(points: Points, parameters: Dbscan | KMeans) -> Sets:
             different = len(np.unique(own, axis=0))
             if different < parameters.number:
                 raise RequestError(
-                    f"scan {scan}: k-means is to find {parameters.number} targets among {different} different "
-                    "points; give a smaller number, or leave the scan out"
+                    f"scan {scan}: k-means is to find {parameters.number} targets among {different} "
+                    "different points; give a smaller number, or leave the scan out"
                 )
             model = learn.KMeans(parameters.number, n_init=10, random_state=parameters.seed)
         order, sizes = _grouped(model.fit_predict(own))

@@ -25,11 +25,11 @@ class Clustering(Declared):
 
     mode: str = parameter("recommended", help="how the points of a target are gathered")
     range_extent: Positive = parameter(
-        help="D_r: the greatest extent of a target in range, in the unit of the points"
+        help="the greatest extent D_r of a target in range, in the unit of the points"
     )
     result: Literal["mean", "strongest"] = parameter(
         "mean",
-        help="the plot of a cluster: the mean of its kept points, weighted by amplitude, or the strongest one",
+        help="the plot of a cluster: the mean of its kept points, weighted by amplitude, or the strongest",
     )
 
     @classmethod
@@ -56,7 +56,7 @@ class Recommended(SplittingClustering):
 
     mode: Literal["recommended"] = parameter("recommended", help="how the points of a target are gathered")
     doppler_extent: Positive = parameter(
-        help="D_d: the greatest extent of a target in Doppler, in the unit of the points"
+        help="the greatest extent D_d of a target in Doppler, in the unit of the points"
     )
     range_cell: NotNegative = parameter(
         1.0, help="size of a range cell; a twelfth of its square is added to the variance"
@@ -81,7 +81,7 @@ class Dbscan(Clustering):
 
     mode: Literal["dbscan"] = parameter("dbscan", help="how the points of a target are gathered")
     doppler_extent: Positive = with_default(Recommended, "doppler_extent", ...)
-    eps: Positive = parameter(0.4, help="how near neighbours are, in units of range_extent and doppler_extent")
+    eps: Positive = parameter(0.4, help="how near neighbours are, in units of the two extents")
     least_points: Count = parameter(
         4,
         dimension=Dimension.COUNT,

@@ -66,9 +66,7 @@ class Points:
             wrong = np.flatnonzero(~is_allowed(name, column))
             if len(wrong):
                 value = column[wrong[0]]
-                raise RequestError(
-                    f"point {wrong[0]}: {name} {value:g} is given; it must be {ALLOWED[name]}"
-                )
+                raise RequestError(f"point {wrong[0]}: {name} {value:g} is given; it must be {ALLOWED[name]}")
         count = len(columns["range"])
         at = np.array([0, count], np.int64) if offsets is None else np.ascontiguousarray(offsets, np.int64)
         if len(at) < 1 or at[0] != 0 or at[-1] != count or (np.diff(at) < 0).any():

@@ -1,4 +1,4 @@
-"""Clusters against the truth: was the number of targets right, and where were their plots?"""
+"""Clusters against the truth: the number of targets, and where their plots are."""
 
 from __future__ import annotations
 

@@ -12,8 +12,10 @@ from algorithms.clustering.parameters import CorrectedPatent, Recommended
 from algorithms.clustering.points import Points
 from algorithms.compiled import kernel
 
-SLACK = 1.0 + 1e-9
-"""Forgives rounding where an extent is exactly the greatest one."""
+ROUNDING = 1e-9
+"""Sizes that differ by this share of them are equal: a change of unit must not decide between them."""
+
+SLACK = 1.0 + ROUNDING
 
 WHOLE, RANGE, DOPPLER = -1, 0, 1
 """Along which axis a set is split; a whole one is not split."""
@@ -89,7 +91,7 @@ def _widest_gap(values, order, centre):  # type: ignore[no-untyped-def]
     for place in range(1, len(order)):
         low, high = values[order[place - 1]], values[order[place]]
         away = abs(0.5 * (low + high) - centre)
-        if (high - low) * SLACK >= widest and away < nearest:
+        if (high - low) * SLACK >= widest and away < nearest - ROUNDING * widest:
             below, nearest = low, away
     return widest, below
 
@@ -124,7 +126,7 @@ def _cut(along, doppler, by_range, by_doppler, rule):  # type: ignore[no-untyped
             axis, cut, widest, relative = RANGE, below, gap, gap / rule.range_extent
     if width(b + rule.doppler_added) > rule.doppler_extent * SLACK:
         gap, below = _widest_gap(doppler, by_doppler, mean_d)
-        if gap / rule.doppler_extent > relative:
+        if gap / rule.doppler_extent > relative * SLACK:
             axis, cut, widest = DOPPLER, below, gap
     return axis, cut, widest
 

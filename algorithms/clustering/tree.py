@@ -103,9 +103,7 @@ def steps(
     return found
 
 
-def _why(
-    ellipse: Ellipse, parameters: Recommended | CorrectedPatent, verdict: Verdict, count: int
-) -> str:
+def _why(ellipse: Ellipse, parameters: Recommended | CorrectedPatent, verdict: Verdict, count: int) -> str:
     """Return what the verdict rests on, in words."""
     if isinstance(parameters, CorrectedPatent):
         sizes = [("chord", ellipse.chord, parameters.range_extent)]
@@ -115,9 +113,10 @@ def _why(
             ("range extent", along, parameters.range_extent),
             ("Doppler extent", across, parameters.doppler_extent),
         ]
+    if verdict == Verdict.TOO_FEW:
+        return f"{count} of at least {parameters.least_points} points"
     wide = [f"{name} {size:.4g} > {most:g}" for name, size, most in sizes if size > most]
     fitting = ", ".join(f"{name} {size:.4g} ≤ {most:g}" for name, size, most in sizes if size <= most)
     if verdict == Verdict.SPLIT:
         return ", ".join(wide)
-    reason = ", ".join([*wide, "no gap to split at"]) if wide else fitting
-    return reason if verdict == Verdict.TARGET else f"{reason}; {count} of {parameters.least_points} points"
+    return ", ".join([*wide, "no gap to split at"]) if wide else fitting
