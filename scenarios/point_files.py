@@ -71,4 +71,5 @@ def parse_points(text: str, source: str, only: int | None = None) -> PointRecord
             )
     numbers, first = np.unique(scan[rows], return_index=True)
     offsets = np.append(first, len(rows)).astype(np.int64)
-    return PointRecording(Points.of(*(columns[name][rows] for name in ALLOWED), offsets), numbers, rows)
+    along, doppler, amplitude = (columns[name][rows] for name in FORM.needed)
+    return PointRecording(Points.of(along, doppler, amplitude, offsets), numbers, rows)

@@ -148,4 +148,5 @@ def draw_scene(scene: RangeDopplerScene, seed: int, trial: int, trials: int = 1)
         scene.interference, bounds[:, 0].copy(), bounds[:, 1] - bounds[:, 0],
     )  # fmt: skip
     offsets = np.arange(trials + 1, dtype=np.int64) * (int(counts.sum()) + scene.interference)
-    return SceneDraw(Points.of(*points.T, offsets), origin, centres)
+    along, doppler, amplitude = (points[:, column] for column in range(3))
+    return SceneDraw(Points.of(along, doppler, amplitude, offsets), origin, centres)

@@ -186,5 +186,5 @@ def conclude(points: Points, sets: Sets, conclusion: Conclusion) -> Clusters:
         conclusion.radius**2 * SLACK, conclusion.least_points, conclusion.is_mean,
         conclusion.range_added, conclusion.doppler_added,
     )  # fmt: skip
-    columns = (np.ascontiguousarray(plots[:, column]) for column in range(3))
-    return Clusters(points, sets.scan[which], *columns, strongest, shapes, label, kept)
+    along, doppler, amplitude = (np.ascontiguousarray(plots[:, column]) for column in range(3))
+    return Clusters(points, sets.scan[which], along, doppler, amplitude, strongest, shapes, label, kept)

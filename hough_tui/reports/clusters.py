@@ -42,24 +42,19 @@ def cluster_sheet(document: Document) -> Sheet:
     """Return the plots of all clusters."""
     found = list(document.get("clusters") or ())
     ellipses = [cluster.get("ellipse") or {} for cluster in found]
+    widths = [ellipse.get("widths") or (None, None) for ellipse in ellipses]
     columns = (
         Column("#", tuple(str(index) for index in range(len(found)))),
         Column("scan", tuple(str(cluster.get("scan")) for cluster in found)),
-        Column("range", _places(found, "range")),
-        Column("Doppler", _places(found, "doppler")),
+        Column("range", _sizes([cluster.get("range") for cluster in found])),
+        Column("Doppler", _sizes([cluster.get("doppler") for cluster in found])),
         Column("amplitude", aligned([significant(number(cluster.get("amplitude"))) for cluster in found])),
         Column("points", tuple(str(len(cluster.get("members") or ())) for cluster in found)),
         Column("kept", tuple(str(len(cluster.get("kept") or ())) for cluster in found), rank=10),
         Column("chord", _sizes([ellipse.get("chord") for ellipse in ellipses]), rank=30),
-        Column(
-            "extent in\nrange", _sizes([_part(ellipse.get("widths"), 0) for ellipse in ellipses]), rank=20
-        ),
-        Column(
-            "extent in\nDoppler", _sizes([_part(ellipse.get("widths"), 1) for ellipse in ellipses]), rank=20
-        ),
-        Column(
-            "angle\n°", tuple(fixed(number(ellipse.get("angle_deg")), 1) for ellipse in ellipses), rank=40
-        ),
+        Column("extent in\nrange", _sizes([width[0] for width in widths]), rank=20),
+        Column("extent in\nDoppler", _sizes([width[1] for width in widths]), rank=20),
+        Column("angle\n°", _sizes([ellipse.get("angle_deg") for ellipse in ellipses], 1), rank=40),
     )
     count = f"{len(found):,} cluster{'' if len(found) == 1 else 's'}"
     return Sheet(f"{document.get('mode')} · {count}", columns, (_counts(document),))
@@ -90,24 +85,12 @@ def _branch(steps: Sequence[Document], index: int) -> str:
 
 def _verdict(step: Document) -> str:
     if step["verdict"] == "split":
-        return f"split in {AXES[step['axis']]} at {_middle(step)}, gap {significant(step['gap'])}"
+        return f"split in {AXES[step['axis']]} at {step['cut']:.6g}, gap {significant(step['gap'])}"
     return f"cluster {step['cluster']}" if step["cluster"] is not None else "too few points"
 
 
-def _middle(step: Document) -> str:
-    return f"{step['cut']:.6g}"
-
-
-def _places(found: Sequence[Document], key: str) -> tuple[str, ...]:
-    return tuple(fixed(number(cluster.get(key)), 2) for cluster in found)
-
-
-def _sizes(values: Sequence[object]) -> tuple[str, ...]:
-    return tuple(fixed(number(value), 2) for value in values)
-
-
-def _part(pair: Sequence[object] | None, index: int) -> object:
-    return None if pair is None else pair[index]
+def _sizes(values: Sequence[object], decimals: int = 2) -> tuple[str, ...]:
+    return tuple(fixed(number(value), decimals) for value in values)
 
 
 def _counts(document: Document) -> str:
