@@ -79,7 +79,7 @@ class SceneDraw:
 SCENES: dict[str, RangeDopplerScene] = {
     "same Doppler": RangeDopplerScene((ExtendedTarget(30, 45), ExtendedTarget(75, 45))),
     "separated": RangeDopplerScene((ExtendedTarget(30, 30), ExtendedTarget(75, 65))),
-    "unequal": RangeDopplerScene((ExtendedTarget(30, 30, points=60), ExtendedTarget(65, 45, points=12))),
+    "unequal": RangeDopplerScene((ExtendedTarget(30, 40, points=60), ExtendedTarget(60, 45, points=12))),
     "diagonal": RangeDopplerScene(
         tuple(ExtendedTarget(at, at, correlation=0.7) for at in (15.0, 45.0, 75.0))
     ),
