@@ -35,6 +35,11 @@ class Box:
         return tuple(0.5 * (low + high) for low, high in zip(self.lower, self.upper, strict=True))
 
     @property
+    def plane(self) -> Box:
+        """The region in the plane (x, y)."""
+        return Box(self.lower[:2], self.upper[:2])
+
+    @property
     def area(self) -> float:
         """Area of the region in the plane (x, y)."""
         return (self.upper[0] - self.lower[0]) * (self.upper[1] - self.lower[1])

@@ -73,6 +73,8 @@ class Scores:
     state : int8 (tracks,), `FALSE`, `FINDER` or `DUPLICATE`, of each track
     theta_error, rho_error : float64 (trials, targets), of the matching track with the highest
         score (of equals, the nearest in ρ), signed, across the seam at 0 and π; NaN where none
+    mixed : int64 (trials,), tracks that match a target and hold plots of more than one origin,
+        such as clutter; −1 where the tracks' plots are not known
     """
 
     found: NDArray[np.bool_]
@@ -81,6 +83,7 @@ class Scores:
     state: NDArray[np.int8]
     theta_error: NDArray[np.float64]
     rho_error: NDArray[np.float64]
+    mixed: NDArray[np.int64]
 
 
 @kernel
@@ -178,6 +181,21 @@ def _shared(plots, track_offsets, plot_offsets, origin, targets):  # type: ignor
     return shared
 
 
+@kernel
+def _mixed(plots, state, track_offsets, plot_offsets, origin):  # type: ignore[no-untyped-def]
+    mixed = np.zeros(len(track_offsets) - 1, np.int64)
+    for trial in range(len(track_offsets) - 1):
+        for track in range(track_offsets[trial], track_offsets[trial + 1]):
+            if state[track] == FALSE:
+                continue
+            first = origin[plot_offsets[trial] + plots[track, 0]]
+            for row in plots[track]:
+                if row >= 0 and origin[plot_offsets[trial] + row] != first:
+                    mixed[trial] += 1
+                    break
+    return mixed
+
+
 def score(tracks: TrackChunk, truth: Truth, plot_offsets: NDArray[np.int64], criterion: Criterion) -> Scores:
     """Return what a criterion says of the tracks of a chunk.
 
@@ -194,10 +212,13 @@ def score(tracks: TrackChunk, truth: Truth, plot_offsets: NDArray[np.int64], cri
         shared = _shared(tracks.plots, tracks.offsets, plot_offsets, truth.origin, truth.targets)
     else:
         shared = np.zeros((0, 0), np.int64)
-    columns = _score(
+    found, false, duplicates, state, theta_error, rho_error = _score(
         tracks.offsets, tracks.theta, tracks.rho, tracks.score, shared, truth.theta, truth.rho, truth.middle,
         np.nan if criterion.rho is None else criterion.rho,
         np.nan if criterion.theta is None else criterion.theta,
         least, criterion.mid_track, criterion.nearest,
     )  # fmt: skip
-    return Scores(*columns)
+    mixed = np.full(len(tracks.counts), -1, np.int64)
+    if tracks.plots is not None and tracks.plots.shape[1] > 0:
+        mixed = _mixed(tracks.plots, state, tracks.offsets, plot_offsets, truth.origin)
+    return Scores(found, false, duplicates, state, theta_error, rho_error, mixed)

@@ -12,11 +12,13 @@ import numpy as np
 from measure import ratio, rounds, verdict
 
 from algorithms.hough.voting import GridArrays, vote
+from algorithms.initiators.registry import initiator
 from algorithms.scoring import score
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import plan_run
 from scenarios.files import load_set
-from scenarios.simulate import World, draw, truth
+from scenarios.simulate import draw, truth
+from scenarios.world import World
 
 TRIALS = 200
 
@@ -51,6 +53,19 @@ def whole_trial() -> None:
     print(f"  whole trial / voting: {value:.2f} (bound 3: {verdict(value, 3)})")
 
 
+def weighted() -> None:
+    """Print the time of `weighted` alone on the 15-scan scene, by default parameters on the course's grid."""
+    given = load_set("course-report")
+    scenario, grid = given.scenario("two-crossing"), given.entry("standard").parameters.grid
+    algorithm, context = initiator("weighted"), scenario.context
+    chunk = draw(World.of(scenario), 7, 0, TRIALS).chunk
+    for mode in ("several", "single"):
+        parameters = algorithm.parameters.model_validate({"mode": mode, "grid": grid}).resolved(context)
+        times = rounds({mode: partial(algorithm.initiate_chunk, chunk, context, parameters)}, count=5)[mode]
+        value = statistics.median(times) / TRIALS * 1e3
+        print(f"  {mode:12} {value:6.3f} ms a trial (bound 1: {verdict(value, 1.0)})")
+
+
 def engine() -> None:
     """Print (cell, trial) pairs a second of the set `course-report`, and what a second worker gives."""
     # The sound experiment scores tracks that are found already, so it would flatter the figure.
@@ -73,5 +88,7 @@ def engine() -> None:
 if __name__ == "__main__":
     print("standard, 15 scans, λ = 50")
     whole_trial()
+    print("weighted, 15 scans, λ = 50")
+    weighted()
     print("course-report, 9 cells")
     engine()

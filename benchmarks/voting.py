@@ -1,4 +1,4 @@
-"""One vote, beside OpenCV and scikit-image: the same points, bins and a single thread.
+"""One vote, beside OpenCV, scikit-image and itself with moments: the same points, bins, one thread.
 
 Run it with `python benchmarks/voting.py`; it needs the extra `dev`.
 """
@@ -14,6 +14,7 @@ from measure import ratio, rounds, verdict
 from skimage.transform import hough_line
 
 from algorithms.hough.grid import Grid
+from algorithms.hough.moments import reciprocals, vote_with_moments
 from algorithms.hough.voting import GridArrays, vote
 
 SIDE = 353
@@ -39,6 +40,17 @@ def compare(points: int) -> None:
     xs, ys = x.astype(np.float64), y.astype(np.float64)
     votes = partial(vote, xs, ys, arrays.cosine, arrays.sine, grid.rho_min, 1.0, accumulator, working)
 
+    mean, squares, places = np.zeros(accumulator.shape), np.zeros(accumulator.shape), np.empty(points)
+    inverse = reciprocals(points)
+
+    def with_moments() -> None:
+        # Counts grow from call to call, and the table of their reciprocals does not.
+        accumulator[:] = 0
+        vote_with_moments(
+            xs, ys, arrays.cosine, arrays.sine, grid.rho_min, 1.0,
+            accumulator, mean, squares, inverse, places,
+        )  # fmt: skip
+
     # The threshold leaves OpenCV no peak to sort, so that its time is that of its votes.
     cloud = np.stack([x, y], axis=1).astype(np.float32)[:, None, :]
     cv2.setNumThreads(1)
@@ -54,15 +66,16 @@ def compare(points: int) -> None:
         np.pi - 1e-9,
         np.pi / THETA_BINS,
     )
-    seconds = rounds(
-        {"hough-tui": votes, "OpenCV": opencv, "scikit-image": partial(hough_line, image, theta)}
-    )
+    contenders = {"hough-tui": votes, "with moments": with_moments, "OpenCV": opencv}
+    seconds = rounds({**contenders, "scikit-image": partial(hough_line, image, theta)})
     print(f"{points:,} points, {THETA_BINS} × {columns} cells")
     for name, times in seconds.items():
         print(f"  {name:13} {statistics.median(times) / points / THETA_BINS * 1e9:6.2f} ns a vote")
     for other, bound in (("OpenCV", 1 / 2), ("scikit-image", 1 / 3)):
         value = ratio(seconds, "hough-tui", other)
         print(f"  hough-tui / {other}: {value:.3f} (bound {bound:.3f}: {verdict(value, bound)})")
+    value = ratio(seconds, "with moments", "hough-tui")
+    print(f"  with moments / hough-tui: {value:.2f} (bound 6: {verdict(value, 6.0)})")
 
 
 if __name__ == "__main__":

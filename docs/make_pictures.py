@@ -27,7 +27,8 @@ SET = "course-report"
 KEPT = ("20260105-090000-course-report-a1b2", "20260105-091500-course-report-c3d4")
 """What the kept runs are called: their own names hold the time."""
 
-NO_PATHS = ("/home/", "/root", "/tmp", "/work", "/Users/")
+NO_PATHS = ("/home/", "/Users/", tempfile.gettempdir())
+"""What no picture may hold: where files lie on this machine."""
 
 
 RUN = re.compile(

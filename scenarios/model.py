@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union, cast
 
-from pydantic import AfterValidator, ConfigDict, Discriminator, Field, Tag, create_model, model_validator
+import numpy as np
+from pydantic import ConfigDict, Discriminator, Field, Tag, create_model, model_validator
 
 from algorithms.context import Box, Context, Unit
 from algorithms.initiators.base import Initiator
@@ -16,7 +17,6 @@ from algorithms.parameters import (
     Declared,
     Dimension,
     Flag,
-    Fraction,
     Integer,
     Name,
     NotNegative,
@@ -27,6 +27,8 @@ from algorithms.parameters import (
     parameter,
 )
 from algorithms.scoring import Criterion
+from scenarios.conversion import converted
+from scenarios.sensors import AnySensor, Bounds, CartesianSensor, Place, PolarSensor
 
 MOST_PLOTS = 20_000_000
 """The most plots that a trial may be expected to hold."""
@@ -36,54 +38,30 @@ LARGEST_SEED = 2**64 - 1
 Seed = Annotated[int, Field(strict=True, ge=0, le=LARGEST_SEED)]
 
 
-def _rising(bounds: tuple[float, float]) -> tuple[float, float]:
-    if bounds[0] >= bounds[1]:
-        raise ValueError(
-            f"[{bounds[0]:g}, {bounds[1]:g}] is given, which spans nothing; "
-            "the first bound must be less than the second"
-        )
-    return bounds
-
-
-Bounds = Annotated[tuple[Number, Number], AfterValidator(_rising)]
-Vector = tuple[Number, Number]
-
-
 class Region(Declared):
-    """A rectangle with sides along the axes."""
+    """A rectangle with sides along the axes; in space, a box."""
 
     x: Bounds = parameter(dimension=Dimension.LENGTH, help="western and eastern bound")
     y: Bounds = parameter(dimension=Dimension.LENGTH, help="southern and northern bound")
+    z: Bounds | None = parameter(
+        None, dimension=Dimension.LENGTH, help="lower and upper bound; none: the region lies in the plane"
+    )
 
     @property
     def box(self) -> Box:
         """The region as the algorithms take it."""
-        return Box((self.x[0], self.y[0]), (self.x[1], self.y[1]))
-
-
-class CartesianSensor(Declared):
-    """A sensor that measures x and y with independent gaussian noise."""
-
-    kind: Literal["cartesian"] = parameter("cartesian", help="how the sensor measures")
-    sigma: NotNegative | tuple[NotNegative, NotNegative] = parameter(
-        dimension=Dimension.LENGTH, help="standard deviation of the noise, one for both axes or [on x, on y]"
-    )
-    detection_probability: Fraction = parameter(
-        1.0, dimension=Dimension.FRACTION, help="probability Pd that a scan holds a plot of a target"
-    )
-
-    @property
-    def axes(self) -> tuple[float, float]:
-        """Standard deviations of the noise on x and on y."""
-        return self.sigma if isinstance(self.sigma, tuple) else (self.sigma, self.sigma)
+        axes = (self.x, self.y) if self.z is None else (self.x, self.y, self.z)
+        return Box(tuple(axis[0] for axis in axes), tuple(axis[1] for axis in axes))
 
 
 class Clutter(Declared):
     """Plots that no target caused, uniform over an area."""
 
     kind: str = parameter("poisson", help="how the number of plots is drawn")
-    over: Literal["region", "targets"] = parameter(
-        "region", help="the area: a region, or the box around the true paths of the targets"
+    over: Literal["region", "targets", "volume", "sector"] = parameter(
+        "region",
+        help="the area: a region, the box around the true paths of the targets, or the sector of each polar "
+        "sensor, uniform in its volume or in its coordinates (range, azimuth, elevation)",
     )
     region: Region | None = parameter(None, help="where they lie; the scenario's region where none is given")
 
@@ -94,8 +72,8 @@ class Clutter(Declared):
 
     @model_validator(mode="after")
     def _one_area(self) -> Self:
-        if self.over == "targets" and self.region is not None:
-            raise ValueError("region is given with over: targets; leave one of them out")
+        if self.over != "region" and self.region is not None:
+            raise ValueError(f"region is given with over: {self.over}; leave one of them out")
         return self
 
 
@@ -144,16 +122,24 @@ class Target(Declared):
     """A target of constant velocity."""
 
     name: Name | None = parameter(None, help="what it is called in tables")
-    position: Vector = parameter(dimension=Dimension.LENGTH, help="[x, y] in the scan in which it appears")
-    velocity: Vector = parameter(dimension=Dimension.SPEED, help="[vx, vy], in the unit of length a second")
-    birth: Whole = parameter(0, dimension=Dimension.COUNT, help="the first scan in which it is there")
+    position: Place = parameter(
+        dimension=Dimension.LENGTH, help="[x, y, z] in the scan in which it appears; z in space only"
+    )
+    velocity: Place = parameter(
+        dimension=Dimension.SPEED, help="[vx, vy, vz], in the unit of length a second; vz in space only"
+    )
+    birth: Whole = parameter(
+        0, dimension=Dimension.COUNT, help="the first scan in which it is there, by the scenario's interval"
+    )
     death: Whole | None = parameter(
         None, dimension=Dimension.COUNT, help="the last scan in which it is there; none: to the end"
     )
-    spread: NotNegative | tuple[NotNegative, NotNegative] = parameter(
-        0.0,
-        dimension=Dimension.LENGTH,
-        help="how far from `position` it may begin, uniform from draw to draw, for both axes or [x, y]",
+    spread: NotNegative | tuple[NotNegative, NotNegative] | tuple[NotNegative, NotNegative, NotNegative] = (
+        parameter(
+            0.0,
+            dimension=Dimension.LENGTH,
+            help="how far from `position` it may begin, uniform from draw to draw, one number or one an axis",
+        )
     )
 
     @model_validator(mode="after")
@@ -163,27 +149,40 @@ class Target(Declared):
                 f"death {self.death} is given with birth {self.birth}; a target's last scan must not be "
                 "before its first"
             )
+        for name, given in (("velocity", self.velocity), ("spread", self.spread)):
+            if isinstance(given, tuple) and len(given) != len(self.position):
+                raise ValueError(
+                    f"{name} has {len(given)} numbers and position {len(self.position)}; "
+                    "give as many of each: 2 in the plane, 3 in space"
+                )
         return self
 
     @property
     def stands_still(self) -> bool:
-        """Whether it has no line."""
-        return not any(self.velocity)
+        """Whether it has no line in the plane (x, y)."""
+        return not any(self.velocity[:2])
 
     @property
-    def spread_axes(self) -> tuple[float, float]:
-        """How far from `position` it may begin, on x and on y."""
-        return self.spread if isinstance(self.spread, tuple) else (self.spread, self.spread)
+    def spread_axes(self) -> tuple[float, ...]:
+        """How far from `position` it may begin, on each axis."""
+        return self.spread if isinstance(self.spread, tuple) else (self.spread,) * len(self.position)
 
-    def present(self, scans: int) -> range:
-        """Return the scans of a batch in which it is there."""
-        return range(self.birth, scans if self.death is None else min(self.death + 1, scans))
+    def lifetime(self, interval: float) -> tuple[float, float]:
+        """Return the times of the first and the last scan in which it is there; the last may be infinite."""
+        return self.birth * interval, math.inf if self.death is None else self.death * interval
 
-    def ends(self, scans: int, interval: float) -> tuple[Vector, Vector]:
-        """Return where its path begins and ends within a batch, as it is without `spread`."""
-        (x, y), (vx, vy) = self.position, self.velocity
-        elapsed = interval * max(0, len(self.present(scans)) - 1)
-        return (x, y), (x + vx * elapsed, y + vy * elapsed)
+    def ends(self, interval: float, last: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Return where its path begins and ends within a batch, as it is without `spread`.
+
+        Parameters
+        ----------
+        interval : time between scans, in which birth and death are counted
+        last : time of the batch's last scan
+        """
+        begin, end = self.lifetime(interval)
+        elapsed = max(0.0, min(end, last) - begin)
+        moved = zip(self.position, self.velocity, strict=True)
+        return self.position, tuple(place + speed * elapsed for place, speed in moved)
 
 
 class Scenario(Declared):
@@ -196,8 +195,13 @@ class Scenario(Declared):
         dimension=Dimension.COUNT, help="number of scans n of a batch"
     )
     interval: Positive = parameter(dimension=Dimension.TIME, help="time T between scans, in seconds")
-    region: Region = parameter(help="the region under surveillance")
-    sensor: CartesianSensor = parameter(help="what measures")
+    region: Region | None = parameter(
+        None, help="the region under surveillance; none: the box around what polar sensors see"
+    )
+    sensor: AnySensor = parameter(help="what measures")
+    further_sensors: list[AnySensor] = parameter(
+        default_factory=list, help="further sensors; the plots of all are merged in the order of time"
+    )
     clutter: list[AnyClutter] = parameter(default_factory=list, help="sources of clutter; they add up")
     targets: list[Target] = parameter(default_factory=list, help="the targets")
 
@@ -212,37 +216,126 @@ class Scenario(Declared):
             raise ValueError(
                 "clutter is over: targets, and there is no target; give a target, or clutter over: region"
             )
+        flat = next((sensor for sensor in self.sensors if not isinstance(sensor, PolarSensor)), None)
+        if flat is not None and self.region is None:
+            raise ValueError("region is missing; a cartesian sensor sees everything, so it must be given")
+        for source in self.clutter:
+            if flat is not None and source.over in ("volume", "sector"):
+                raise ValueError(
+                    f"clutter is over: {source.over}, and a cartesian sensor has no sector; "
+                    "give over: region, or polar sensors alone"
+                )
         return self
+
+    @model_validator(mode="after")
+    def _is_flat_or_not(self) -> Self:
+        """Refuse parts that lie in the plane beside others that lie in space."""
+        said = [("region", None if self.region is None else len(self.region.box.lower))]
+        said += [
+            (f"further_sensors[{index - 1}]" if index else "sensor", sensor.dimensions)
+            for index, sensor in enumerate(self.sensors)
+        ]
+        said += [(f"targets[{index}]", len(target.position)) for index, target in enumerate(self.targets)]
+        for index, source in enumerate(self.clutter):
+            if source.region is not None:
+                said.append((f"clutter[{index}].region", len(source.region.box.lower)))
+        known = [(name, number) for name, number in said if number is not None]
+        for name, number in known:
+            if number != known[0][1]:
+                words = {2: "in the plane (two numbers a vector, no z)", 3: "in space (three numbers, z)"}
+                raise ValueError(
+                    f"{known[0][0]} is {words[known[0][1]]}, {name} is {words[number]}; make them alike"
+                )
+        return self
+
+    @property
+    def sensors(self) -> list[AnySensor]:
+        """All sensors."""
+        return [self.sensor, *self.further_sensors]
+
+    @property
+    def dimensions(self) -> int:
+        """2 in the plane, 3 in space."""
+        if self.region is not None:
+            return len(self.region.box.lower)
+        return self.sensor.dimensions or 2
+
+    @property
+    def box(self) -> Box:
+        """The region, or the box around what the sensors see."""
+        if self.region is not None:
+            return self.region.box
+        boxes = [sensor.sector_box for sensor in self.sensors]
+        known = [box for box in boxes if box is not None]
+        return Box(
+            tuple(map(min, zip(*(box.lower for box in known), strict=True))),
+            tuple(map(max, zip(*(box.upper for box in known), strict=True))),
+        )
+
+    @property
+    def last_time(self) -> float:
+        """Time of the last scan of any sensor."""
+        return max(
+            sensor.first_scan + (self.scans - 1) * (sensor.period or self.interval) for sensor in self.sensors
+        )
+
+    @property
+    def timetable(self) -> list[tuple[float, int, int]]:
+        """The scans of all sensors in the order of time: time, which sensor, its own number of the scan."""
+        return sorted(
+            (sensor.first_scan + number * (sensor.period or self.interval), index, number)
+            for index, sensor in enumerate(self.sensors)
+            for number in range(self.scans)
+        )
 
     @property
     def expected_clutter(self) -> float:
         """The number of plots of clutter that a batch is expected to hold."""
-        return sum(source.expected(self.scans) for source in self.clutter)
+        return sum(source.expected(self.scans * len(self.sensors)) for source in self.clutter)
 
     @property
     def expected_plots(self) -> float:
         """The number of plots that a batch holds at the most, clutter as expected."""
-        return self.expected_clutter + self.scans * len(self.targets)
+        return self.expected_clutter + self.scans * len(self.sensors) * len(self.targets)
 
     def area(self, source: Clutter) -> Box:
         """Return where the plots of a source of clutter lie."""
-        if source.over == "region":
-            return (source.region or self.region).box
-        ends = [end for target in self.targets for end in target.ends(self.scans, self.interval)]
+        if source.over != "targets":
+            return source.region.box if source.region is not None else self.box
+        ends = [end for target in self.targets for end in target.ends(self.interval, self.last_time)]
         axes = list(zip(*ends, strict=True))
         return Box(tuple(map(min, axes)), tuple(map(max, axes)))
 
     @property
     def context(self) -> Context:
-        """What an initiator is told of this scenario."""
+        """What an initiator is told of this scenario.
+
+        With several sensors the interval is the mean one between scans, the detection probability
+        the mean, σ the greatest of theirs, and the station that of the first.
+        """
+        noise = [self._typical_noise(sensor) for sensor in self.sensors]
+        scans, interval = self.scans, self.sensor.period or self.interval
+        if self.further_sensors:
+            first = min(sensor.first_scan for sensor in self.sensors)
+            scans *= len(self.sensors)
+            interval = (self.last_time - first) / (scans - 1)
         return Context(
-            self.scans,
-            self.interval,
-            self.sensor.detection_probability,
-            self.sensor.axes,
-            self.region.box,
+            scans,
+            interval,
+            sum(sensor.detection_probability for sensor in self.sensors) / len(self.sensors),
+            tuple(map(max, zip(*noise, strict=True))),
+            self.box,
             self.unit,
+            self.sensor.station if isinstance(self.sensor, PolarSensor) else None,
         )
+
+    def _typical_noise(self, sensor: CartesianSensor | PolarSensor) -> tuple[float, ...]:
+        """Return the standard deviations on each axis: of a polar sensor, in the middle of its sector."""
+        if not isinstance(sensor, PolarSensor):
+            return sensor.axes(self.dimensions)
+        middle = [0.5 * (low + high) for low, high in sensor.limits[: sensor.dimensions]]
+        _, covariance = converted(np.array([middle]), np.array(sensor.sigmas))
+        return tuple(map(float, np.sqrt(np.diagonal(covariance[0]))))
 
 
 class InitiatorEntry(Declared):

@@ -185,23 +185,25 @@ def write_plots(draw: Draw, scenario: Scenario) -> str:
     Parameters
     ----------
     draw : one trial of the scenario
-    scenario : whose targets the plots are of; a plot of clutter has no `target`, `true_x`, `true_y`
+    scenario : whose targets the plots are of; a plot of clutter has no `target`, `true_x`, `true_y`;
+        in space there are `z` and `true_z`, too
     """
     if draw.chunk.trials != 1:
         raise ValueError(f"a draw of {draw.chunk.trials} trials; a file of plots holds one")
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(["scan", "time", "x", "y", "target", "true_x", "true_y"])
     plots = draw.chunk.trial(0)
-    columns = (plots.scan, plots.time, plots.position[:, 0], plots.position[:, 1], draw.origin)
-    for scan, time, x, y, origin in zip(*(column.tolist() for column in columns), strict=True):
-        truth: list[int | float | str] = ["", "", ""]
+    axes = "xyz"[: plots.position.shape[1]]
+    writer.writerow(["scan", "time", *axes, "target", *(f"true_{axis}" for axis in axes)])
+    columns = (plots.scan, plots.time, plots.position, draw.origin)
+    for scan, time, place, origin in zip(*(column.tolist() for column in columns), strict=True):
+        truth: list[int | float | str] = [""] * (1 + len(axes))
         if origin >= 0:
             target = scenario.targets[origin]
-            elapsed = (scan - target.birth) * scenario.interval
+            elapsed = time - target.lifetime(scenario.interval)[0]
             moved = zip(target.position, draw.shift[0, origin].tolist(), target.velocity, strict=True)
-            truth = [origin, *(place + shift + speed * elapsed for place, shift, speed in moved)]
-        writer.writerow([scan, time, x, y, *truth])
+            truth = [origin, *(start + shift + speed * elapsed for start, shift, speed in moved)]
+        writer.writerow([scan, time, *place, *truth])
     return file.getvalue()
 
 

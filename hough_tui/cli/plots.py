@@ -123,7 +123,8 @@ def simulate(
     from scenarios.atomic import replace_file
     from scenarios.files import load_set
     from scenarios.recordings import write_plots
-    from scenarios.simulate import World, draw
+    from scenarios.simulate import draw
+    from scenarios.world import World
 
     given = load_set(name)
     chosen = chosen_scenario(given, scenario)

@@ -14,7 +14,8 @@ from algorithms.plots import PlotChunk
 from algorithms.scoring import Scores, score
 from algorithms.tracks import TrackChunk
 from hough_tui.experiments.plan import Plan, SharedDraws, SharedTracks
-from scenarios.simulate import Draw, World, draw, truth
+from scenarios.simulate import Draw, draw, truth
+from scenarios.world import World
 
 PlainInitiation = Callable[[SharedDraws, SharedTracks, PlotChunk], tuple[TrackChunk, float]]
 """How the trials of an initiator in plain Python are run: elsewhere, in so many seconds."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +27,8 @@ class TrialColumns:
     votes_outside : int64 (trials,)
     control_found : bool (trials, targets), whether the draw without targets seems to have the
         target; no rows where the experiment has no control
+    mixed : int32 (trials,), matching tracks with plots of several origins; −1 where it is not known
+    effort : int64 (trials,) by name, what the initiator counted of its work
     """
 
     trial: NDArray[np.int32]
@@ -36,6 +40,8 @@ class TrialColumns:
     rho_error: NDArray[np.float32]
     votes_outside: NDArray[np.int64]
     control_found: NDArray[np.bool_]
+    mixed: NDArray[np.int32]
+    effort: dict[str, NDArray[np.int64]] = field(default_factory=dict)
 
     @classmethod
     def empty(cls, trials: int, targets: int, *, control: bool) -> TrialColumns:
@@ -50,6 +56,7 @@ class TrialColumns:
             np.full((trials, targets), np.nan, np.float32),
             np.zeros(trials, np.int64),
             np.zeros((trials if control else 0, targets), np.bool_),
+            np.full(trials, -1, np.int32),
         )
 
     def fill(
@@ -64,15 +71,35 @@ class TrialColumns:
         self.theta_error[rows] = scores.theta_error
         self.rho_error[rows] = scores.rho_error
         self.votes_outside[rows] = tracks.votes_outside
+        self.mixed[rows] = scores.mixed
+        for name, counted in tracks.effort.items():
+            # One of several threads makes the column, and all write into it.
+            self.effort.setdefault(name, np.zeros(len(self.trial), np.int64))[rows] = counted
         if control_found is not None:
             self.control_found[rows] = control_found
 
     def part(self, rows: slice | NDArray[np.bool_]) -> TrialColumns:
         """Return the columns of some of the trials."""
-        control = self.control_found[rows] if len(self.control_found) else self.control_found
-        values = {field.name: getattr(self, field.name)[rows] for field in fields(self)[:-1]}
-        return TrialColumns(**values, control_found=control)
+        values = {
+            name: column[rows] if len(column) == len(self.trial) else column
+            for name, column in self.arrays().items()
+        }
+        return TrialColumns.of(values)
 
-    def arrays(self) -> dict[str, NDArray[np.generic]]:
-        """Return the columns by name."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Return the columns by name, those of the effort as `effort.NAME`."""
+        plain = {name: getattr(self, name) for name in PLAIN}
+        return plain | {f"{EFFORT}{name}": column for name, column in tuple(self.effort.items())}
+
+    @classmethod
+    def of(cls, arrays: Mapping[str, NDArray[Any]]) -> TrialColumns:
+        """Return the columns that `arrays` gave."""
+        effort = {
+            name.removeprefix(EFFORT): column for name, column in arrays.items() if name.startswith(EFFORT)
+        }
+        return cls(**{name: arrays[name] for name in PLAIN}, effort=effort)
+
+
+EFFORT = "effort."
+PLAIN = tuple(column.name for column in fields(TrialColumns) if column.name != "effort")
+"""The columns that every cell has."""

@@ -14,7 +14,8 @@ from algorithms.intervals import Z95, mean_interval
 from algorithms.quantisation.measurement import count_cells
 from hough_tui.experiments.designs import Design, moving_targets
 from scenarios.model import Scenario
-from scenarios.simulate import World, draw
+from scenarios.simulate import draw
+from scenarios.world import World
 
 CHUNK = 100
 """Trials that are drawn together, so that their plots stay few."""

@@ -81,12 +81,14 @@ class Design:
 
 def moving_targets(scenario: Scenario) -> dict[int, TargetLine]:
     """Return the line of each target that moves and is there within the batch, by its number."""
-    found = {}
+    found, context = {}, scenario.context
+    assert context.sigma is not None
     for index, target in enumerate(scenario.targets):
-        scans = len(target.present(scenario.scans))
-        if scans and not target.stands_still:
+        begin, end = target.lifetime(scenario.interval)
+        scans = math.floor((min(end, scenario.last_time) - begin) / context.interval + 1e-9) + 1
+        if scans > 0 and not target.stands_still:
             found[index] = TargetLine.of_motion(
-                target.position, target.velocity, scans, scenario.interval, scenario.sensor.axes
+                target.position[:2], target.velocity[:2], scans, context.interval, context.sigma[:2]
             )
     return found
 
@@ -163,9 +165,9 @@ def sensing_design(sensing: Sensing, demands: Demands, seed: int, assumed: dict[
 def _question(scenario: Scenario, lines: tuple[TargetLine, ...], demands: Demands) -> Question:
     return Question(
         lines,
-        scenario.sensor.detection_probability,
+        scenario.context.detection_probability,
         _clutter(scenario),
-        scenario.region.box,
+        scenario.box.plane,
         demands.false_cells,
         demands.kappa,
         demands.separation,
@@ -175,6 +177,7 @@ def _question(scenario: Scenario, lines: tuple[TargetLine, ...], demands: Demand
 
 def _clutter(scenario: Scenario) -> Clutter:
     sources = tuple(
-        ClutterSource(source.expected(scenario.scans), scenario.area(source)) for source in scenario.clutter
+        ClutterSource(source.expected(scenario.context.scans), scenario.area(source).plane)
+        for source in scenario.clutter
     )
     return Clutter(sources, all(isinstance(source, ExactClutter) for source in scenario.clutter))

@@ -28,7 +28,7 @@ from hough_tui.experiments.columns import TrialColumns
 from hough_tui.experiments.plain import begin_worker, initiate_trials
 from hough_tui.experiments.plan import Cell, Plan, SharedDraws, SharedTracks
 from hough_tui.experiments.tallies import Row, tally
-from scenarios.simulate import World
+from scenarios.world import World
 
 
 @dataclass(slots=True)

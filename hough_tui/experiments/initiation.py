@@ -252,11 +252,19 @@ def document(found: Initiation) -> dict[str, Any]:
 
 
 def write_accumulator(found: Initiation, path: Path) -> None:
-    """Write the votes, and the centres of rows (radians) and columns, as a numpy archive."""
-    assert found.accumulator is not None
-    grid = found.accumulator.grid
+    """Write votes and centres of rows (radians) and columns as a numpy archive.
+
+    Standard deviations (`std`) and weighted votes (`weighted`) go with them where there are any.
+    """
+    made = found.accumulator
+    assert made is not None
+    further = {
+        name: values
+        for name, values in (("std", made.std), ("weighted", made.weighted))
+        if values is not None
+    }
     archive = io.BytesIO()
-    np.savez_compressed(archive, votes=found.accumulator.votes, theta=grid.theta, rho=grid.rho)
+    np.savez_compressed(archive, votes=made.votes, theta=made.grid.theta, rho=made.grid.rho, **further)
     replace_file(path, archive.getvalue())
 
 

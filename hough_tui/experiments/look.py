@@ -15,7 +15,8 @@ from algorithms.scoring import score
 from algorithms.tracks import Tracks
 from hough_tui.experiments.plain import gathered
 from scenarios.model import InitiatorEntry, MatchCriterion, Scenario
-from scenarios.simulate import Draw, World, draw, true_paths, truth
+from scenarios.simulate import Draw, draw, true_paths, truth
+from scenarios.world import World
 
 MOST_TRACKS = 500
 """How many tracks of a trial are looked at; nobody looks at more, and each must find its plots."""

@@ -56,6 +56,8 @@ def tally(cell: Cell, columns: TrialColumns, seconds: float) -> Row:
         "theta_rmse_deg": _rmse(np.degrees(columns.theta_error.astype(np.float64))),
         "rho_rmse": _rmse(columns.rho_error.astype(np.float64)),
         "votes_outside_per_trial": float(columns.votes_outside.mean()),
+        "pure_track_ratio": _pure(columns),
+        "effort_per_trial": {name: float(counted.mean()) for name, counted in columns.effort.items()},
         "criterion": cell.criterion.document,
         "parameters": cell.parameters.model_dump(mode="json"),
         "seconds_per_trial": seconds / trials,
@@ -68,6 +70,14 @@ def _rate(found: NDArray[np.bool_]) -> tuple[float | None, list[float] | None]:
         return None, None
     per_trial = found.mean(axis=1)
     return float(per_trial.mean()), list(mean_interval(per_trial))
+
+
+def _pure(columns: TrialColumns) -> float | None:
+    """Return the share of the matching tracks that hold plots of their target alone; None if unknown."""
+    matching = int((columns.tracks - columns.false).sum())
+    if matching == 0 or (columns.mixed < 0).any():
+        return None
+    return 1.0 - float(columns.mixed.sum()) / matching
 
 
 def _rmse(errors: NDArray[np.float64]) -> float | None:

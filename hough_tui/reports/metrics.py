@@ -36,6 +36,7 @@ KNOWN = {
     "false_tracks_per_trial": Metric("false tracks a trial"),
     "duplicates_per_trial": Metric("duplicates a trial"),
     "tracks_per_trial": Metric("tracks a trial"),
+    "pure_track_ratio": Metric("pure tracks", "%", True),
     "trials_without_track": Metric("trials without track"),
     "votes_outside_per_trial": Metric("votes outside the grid a trial"),
     "theta_rmse_deg": Metric("θ RMSE", "°"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from hough_tui.reports.layout import Column, Sheet, broken, repeats
@@ -116,6 +116,7 @@ def _false(rows: Sequence[Row]) -> list[Column]:
     )
     columns += _measured(rows, "duplic.\n/trial", "duplicates_per_trial", rank=40, called="duplicates")
     columns += _measured(rows, "tracks\n/trial", "tracks_per_trial", rank=70, called="tracks a trial")
+    columns += _measured(rows, "pure\n%", "pure_track_ratio", _percents, rank=60, called="pure tracks")
     return columns
 
 
@@ -186,7 +187,23 @@ def _notes(rows: Sequence[Row], unit: str) -> tuple[str, ...]:
     words = criterion_words(rows[0].get("criterion"), unit)
     if len(scenarios) == 1 and scenarios[0]:
         words = f"Scenario {scenarios[0]}. {words}".rstrip()
-    return tuple(filter(None, (words, _trials(rows))))
+    return tuple(filter(None, (words, _trials(rows), *_efforts(rows))))
+
+
+def _efforts(rows: Sequence[Row]) -> Iterator[str]:
+    """Yield what initiators counted of their work, one sentence an initiator."""
+    told: dict[str, dict[str, list[float]]] = {}
+    for row in rows:
+        for name, count in (row.get("effort_per_trial") or {}).items():
+            counts = told.setdefault(str(row.get("initiator") or ""), {}).setdefault(name, [])
+            counts.append(float(count))
+    for initiator, counts in told.items():
+        parts = [
+            f"{name.replace('_', ' ')} {significant(min(found))}"
+            + (f" to {significant(max(found))}" if significant(min(found)) != significant(max(found)) else "")
+            for name, found in counts.items()
+        ]
+        yield f"{initiator}, on the mean of a trial: {', '.join(parts)}."
 
 
 def _trials(rows: Sequence[Row]) -> str:

@@ -8,7 +8,8 @@ from algorithms.initiators.base import ChunkInitiator
 from algorithms.initiators.registry import initiators
 from algorithms.scoring import Criterion, score
 from scenarios.model import CartesianSensor, PoissonClutter, Region, Scenario, Target
-from scenarios.simulate import World, draw, truth
+from scenarios.simulate import draw, truth
+from scenarios.world import World
 
 
 def warm() -> None:

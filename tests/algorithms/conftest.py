@@ -10,7 +10,8 @@ import pytest
 from algorithms.plots import PlotChunk
 from algorithms.scoring import score
 from scenarios.files import load_set
-from scenarios.simulate import World, draw, truth
+from scenarios.simulate import draw, truth
+from scenarios.world import World
 
 
 def _chunk(*trials, interval=4.0):

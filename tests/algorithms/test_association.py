@@ -11,7 +11,8 @@ from algorithms.association import SEEDS, associate, with_states
 from algorithms.hough.lines import line_distance, line_through
 from algorithms.plots import PlotChunk, Plots
 from algorithms.tracks import TrackChunk
-from scenarios.simulate import World, draw, true_lines
+from scenarios.simulate import draw, true_lines
+from scenarios.world import World
 
 steady = settings(
     deadline=None, derandomize=True, max_examples=200, suppress_health_check=[HealthCheck.too_slow]

@@ -247,3 +247,19 @@ def test_each_trial_has_its_own_lines():
         Criterion(rho=1.0),
     )
     assert found.found.ravel().tolist() == [True, False]
+
+
+def test_tracks_with_plots_of_others_are_mixed():
+    # Of target 0 alone; with clutter; with a plot of target 1; false ones do not count.
+    trial = [
+        (1.0, 0.0, 1.0, [0, 1, 2]),
+        (1.0, 0.0, 1.0, [0, 1, 2, 3]),
+        (1.0, 0.0, 1.0, [0, 1, 2, 4]),
+        (1.0, 0.0, 1.0, [3, 4]),
+    ]
+    truth = truth_of([(0.0, 0.0), (0.0, 9.0)], [0, 0, 0, -1, 1])
+    found = score(track_chunk([trial]), truth, np.array([0, 5]), Criterion(plots=3))
+    assert found.mixed.tolist() == [2]
+    assert found.false.tolist() == [1]
+    unknown = TrackChunk(np.array([0, 1]), np.ones(1), np.zeros(1), np.ones(1), np.zeros(1, np.int64))
+    assert score(unknown, truth, np.array([0, 5]), Criterion(rho=1.0)).mixed.tolist() == [-1]

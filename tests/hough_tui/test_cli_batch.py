@@ -28,7 +28,8 @@ ROW = {
 }  # fmt: skip
 FURTHER = {"complete"}
 FURTHER_IN_ROW = {
-    "experiment", "seed", "unit", "success_control_ci95", "votes_outside_per_trial", "parameters",
+    "experiment", "seed", "unit", "success_control_ci95", "votes_outside_per_trial",
+        "pure_track_ratio", "effort_per_trial", "parameters",
 }  # fmt: skip
 
 SET = """\

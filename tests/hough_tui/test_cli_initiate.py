@@ -170,6 +170,20 @@ def test_the_accumulator_file_holds_what_a_histogram_counts(document, simulated,
     assert votes.max() == found["max"] == votes[tuple(found["argmax"])]
 
 
+def test_the_accumulator_file_of_weighted_votes_holds_deviations_too(cli, simulated, tmp_path):
+    path = tmp_path / "weighted.npz"
+    status, _, _ = cli("initiate", simulated, *LIKE, "--initiator", "weighted", "--accumulator", path)
+    assert status == 0
+    with np.load(path, allow_pickle=False) as archive:
+        assert set(archive) == {"votes", "theta", "rho", "std", "weighted"}
+        votes, std, weighted = archive["votes"], archive["std"], archive["weighted"]
+    assert std.shape == weighted.shape == votes.shape
+    known = np.isfinite(std)
+    assert known.any()
+    assert (weighted[~known] == 0).all()
+    assert (weighted <= votes).all()
+
+
 def test_votes_outside_the_grid_are_counted_and_said(cli, simulated):
     narrow = ["grid.theta_bins=90", "grid.rho_min=-10", "grid.rho_step=0.5", "grid.rho_bins=100"]
     status, out, err = cli("initiate", simulated, *[p for v in narrow for p in ("--set", v)], "--json")

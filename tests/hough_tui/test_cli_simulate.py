@@ -16,7 +16,8 @@ from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import plan_run
 from scenarios.files import load_set
 from scenarios.recordings import parse_plots
-from scenarios.simulate import World, draw
+from scenarios.simulate import draw
+from scenarios.world import World
 
 PROJECT = Path(__file__).parents[2]
 CROSSING = ("simulate", "course-report", "--scenario", "two-crossing")

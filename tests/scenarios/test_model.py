@@ -83,9 +83,9 @@ def test_models_are_frozen():
 
 
 def test_one_sigma_is_that_of_both_axes():
-    assert CartesianSensor.model_validate({"sigma": 2}).axes == (2.0, 2.0)
-    assert CartesianSensor.model_validate({"sigma": [2, 3]}).axes == (2.0, 3.0)
-    assert CartesianSensor.model_validate({"sigma": 0}).axes == (0.0, 0.0)
+    assert CartesianSensor.model_validate({"sigma": 2}).axes(2) == (2.0, 2.0)
+    assert CartesianSensor.model_validate({"sigma": [2, 3]}).axes(2) == (2.0, 3.0)
+    assert CartesianSensor.model_validate({"sigma": 0}).axes(3) == (0.0, 0.0, 0.0)
 
 
 def test_the_context_is_what_an_initiator_is_told():
@@ -203,7 +203,8 @@ def test_the_numeric_fields_of_a_scenario_can_be_swept():
     )
     paths = {".".join(map(str, path)) for path in numeric_paths(given)}
     assert paths == {
-        "scans", "interval", "region.x.0", "region.x.1", "region.y.0", "region.y.1", "clutter.0.rate",
+        "scans", "interval", "sensor.period", "sensor.first_scan",
+        "region.x.0", "region.x.1", "region.y.0", "region.y.1", "clutter.0.rate",
         "sensor.sigma", "sensor.sigma.0", "sensor.sigma.1", "sensor.detection_probability",
         "targets.0.position.0", "targets.0.position.1", "targets.0.velocity.0", "targets.0.velocity.1",
         "targets.0.spread",
@@ -224,7 +225,7 @@ def test_the_numeric_fields_of_a_scenario_can_be_swept():
         (CartesianSensor, {}),
         (CartesianSensor, {"sigma": -1}),
         (CartesianSensor, {"sigma": [1, -1]}),
-        (CartesianSensor, {"sigma": [1, 1, 1]}),
+        (CartesianSensor, {"sigma": [1, 1, 1, 1]}),
         (CartesianSensor, {"sigma": "1"}),
         (CartesianSensor, {"sigma": 1, "detection_probability": 1.01}),
         (CartesianSensor, {"sigma": 1, "detection_probability": -0.01}),

@@ -14,7 +14,8 @@ from algorithms.plots import PlotChunk
 from scenarios.csv_tables import BLOCK
 from scenarios.model import Scenario
 from scenarios.recordings import Recording, parse_plots, read_plots, write_assigned, write_plots
-from scenarios.simulate import Draw, World, draw
+from scenarios.simulate import Draw, draw
+from scenarios.world import World
 
 FLIGHTS = Path(__file__).parents[2].parent / "shared" / "data" / "flights_paris_4s.csv"
 

@@ -19,7 +19,8 @@ from scenarios.model import (
     Scenario,
     Target,
 )
-from scenarios.simulate import World, draw, poisson_distribution, true_lines, true_paths, truth
+from scenarios.simulate import draw, true_lines, true_paths, truth
+from scenarios.world import World, poisson_distribution
 
 steady = settings(
     deadline=None, derandomize=True, max_examples=50, suppress_health_check=[HealthCheck.too_slow]

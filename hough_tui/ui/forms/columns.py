@@ -19,10 +19,18 @@ INHERITED = "dim italic"
 """The style of a value that is not given here but taken from around."""
 
 
-def columns_of(models: Sequence[type[BaseModel]], unit: Unit | None) -> tuple[FieldDescription, ...]:
-    """Return the columns of elements of some models; their paths begin within the element."""
+def columns_of(
+    models: Sequence[type[BaseModel]], unit: Unit | None, elements: Sequence[BaseModel] = ()
+) -> tuple[FieldDescription, ...]:
+    """Return the columns of elements of some models; their paths begin within the element.
+
+    Parameters
+    ----------
+    elements : those that there are: they say which of several sizes their vectors have
+    """
     found: list[FieldDescription] = []
-    for model in models:
+    for kind in models:
+        model = next((element for element in elements if type(element) is kind), kind)
         # What only some kinds of elements have stands before what follows it there, as in the declaration.
         place = len(found)
         own = told_apart(ordered(described(model, (), unit)), tuple(models))

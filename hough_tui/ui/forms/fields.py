@@ -179,7 +179,7 @@ def _described(name: str, field: FieldInfo, path: Path, unit: Unit | None, value
     given = [one for one in found if one.kind is not type(None)]
     if models(given):
         return _group(plain, models(given), unit, value)
-    return _of_kind(plain, given)
+    return _of_kind(plain, given, value)
 
 
 def _group(
@@ -207,7 +207,7 @@ def told_apart(
     )
 
 
-def _of_kind(plain: FieldDescription, found: list[Alternative]) -> FieldDescription:
+def _of_kind(plain: FieldDescription, found: list[Alternative], value: Any) -> FieldDescription:
     elements = [element for one in found for element in one.elements]
     words = tuple(word for one in found for word in one.choices)
     others = [one for one in found if not one.choices]
@@ -222,11 +222,15 @@ def _of_kind(plain: FieldDescription, found: list[Alternative]) -> FieldDescript
         return replace(plain, kind=Kind.MAPPING, wanted=Wanted(size=None))
     if any(element.kind is str for element in elements):
         return replace(plain, kind=Kind.TEXTS)
-    return _numeric(plain, others, words)
+    return _numeric(plain, others, words, value)
 
 
-def _numeric(plain: FieldDescription, found: list[Alternative], words: tuple[str, ...]) -> FieldDescription:
+def _numeric(
+    plain: FieldDescription, found: list[Alternative], words: tuple[str, ...], value: Any
+) -> FieldDescription:
     several = [one for one in found if one.elements]
+    # Of vectors of several sizes, the one that is there.
+    several.sort(key=lambda one: not (isinstance(value, tuple) and one.length == len(value)))
     single = [one for one in found if one.kind in (int, float)]
     elements = [element for one in several for element in one.elements]
     numbers = single + [element for element in elements if element.kind in (int, float)]
@@ -234,9 +238,11 @@ def _numeric(plain: FieldDescription, found: list[Alternative], words: tuple[str
         return replace(plain, bounds=text_bounds(found))
     whole = all(number.kind is int for number in numbers)
     size = several[0].length if several else 0
-    wanted = Wanted(whole, size, bool(several and single), words, plain.optional)
+    others = tuple(one.length for one in several[1:] if one.length is not None)
+    wanted = Wanted(whole, size, others, bool(several and single), words, plain.optional)
     # A vector that may be one number, a word or nothing is typed as a whole.
-    parts = () if wanted.single or words or plain.optional else component_names(plain.help)
+    names = () if wanted.single or words or plain.optional else component_names(plain.help)
+    parts = names[:size] if others else names
     return replace(
         plain,
         kind=Kind.VECTOR if several else Kind.WHOLE if whole else Kind.NUMBER,

@@ -118,7 +118,7 @@ class ListTable(Widget):
         """
         is_same = field.path == self.field.path and len(elements) == len(self._elements)
         self.field, self._elements, self._holder, self._unit = field, elements, holder, unit
-        self._columns = columns_of(field.models, unit)
+        self._columns = columns_of(field.models, unit, elements)
         if self.is_mounted:
             self._show()
         editor = self._editor

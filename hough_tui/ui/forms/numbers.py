@@ -44,6 +44,7 @@ class Wanted:
     ----------
     whole : whether only whole numbers are taken
     size : 0 for one number, else how many; None for any number of them
+    others : how many there may be, too
     single : whether one number may stand for all of several
     words : words that are taken beside numbers
     optional : whether nothing is taken
@@ -51,6 +52,7 @@ class Wanted:
 
     whole: bool = False
     size: int | None = 0
+    others: tuple[int, ...] = ()
     single: bool = False
     words: tuple[str, ...] = ()
     optional: bool = False
@@ -61,7 +63,8 @@ class Wanted:
         whole = "whole " if self.whole else ""
         choices = [f"a {whole}number"] if self.size == 0 or self.single else []
         if self.size != 0:
-            choices.append(f"{'a list of' if self.size is None else self.size} {whole}numbers")
+            sizes = " or ".join(map(str, sorted((self.size, *self.others)))) if self.size else "a list of"
+            choices.append(f"{sizes} {whole}numbers")
         choices += [f"'{word}'" for word in self.words] + (["empty"] if self.optional else [])
         return " or ".join(choices)
 
@@ -190,7 +193,7 @@ def _items(text: str, given: str, wanted: Wanted) -> list[str]:
         # What begins with a needless zero was cut off a larger number: 1 000.
         raise _RefusedError(f"'{given}' may be one number with a separator; {_ADVICE}")
     items = items if bare else []
-    if wanted.size is not None and len(items) != wanted.size:
+    if wanted.size is not None and len(items) not in (wanted.size, *wanted.others):
         count = f"{len(items)} number{'s' * (len(items) != 1)}"
         raise _RefusedError(f"'{given}' is {count}; it must be {wanted.allowed}, as in {_EXAMPLE}")
     return items

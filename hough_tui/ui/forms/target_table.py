@@ -26,7 +26,7 @@ class TargetTable(ListTable):
 
     def worked_out_cells(self, element: BaseModel) -> Sequence[str]:
         assert isinstance(element, Target)
-        east, north = element.velocity
+        east, north = element.velocity[:2]
         if element.stands_still:
             return "0", ""
         return significant(math.hypot(east, north)), f"{math.degrees(math.atan2(east, north)) % 360.0:.1f}"
@@ -36,10 +36,8 @@ class TargetTable(ListTable):
         scenario = self._holder
         if not isinstance(scenario, Scenario):
             return super().new_element()
-        (west, east), (south, north) = scenario.region.x, scenario.region.y
-        speed = PART * (east - west) / (scenario.scans * scenario.interval)
+        box = scenario.box
+        speed = PART * (box.upper[0] - box.lower[0]) / (scenario.scans * scenario.interval)
         # One figure: a start to be edited, not a result.
-        return {
-            "position": [0.5 * (west + east), 0.5 * (south + north)],
-            "velocity": [float(f"{speed:.1g}"), 0.0],
-        }
+        velocity = [float(f"{speed:.1g}"), *[0.0] * (scenario.dimensions - 1)]
+        return {"position": list(box.centre), "velocity": velocity}

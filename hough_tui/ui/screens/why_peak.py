@@ -59,6 +59,9 @@ class WhyPeak(ModalScreen[None]):
                 classes="title",
                 markup=False,
             )
+            if accumulator.weighted is not None:
+                weighted = float(accumulator.weighted[self._row, self._column])
+                yield Static(f"Weighted by their standard deviation: {weighted:.4g} votes", markup=False)
             scatter = "not defined for fewer than two votes" if spread is None else f"{spread:.4g} {unit}"
             yield Static(f"Standard deviation of the ρ that voted for it: {scatter}", markup=False)
             yield Static(self._surroundings())

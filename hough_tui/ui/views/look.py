@@ -39,8 +39,9 @@ class LookView(Widget):
         "paths, and the tracks as lines through their plots, false ones apart. The accumulator shows the "
         "votes of θ and ρ: the plots that voted for the cell under its cursor light up in the plane, and "
         "Enter tells why the cell is a peak. Choosing a plot in the plane draws its sinusoid over the "
-        "accumulator; choosing a track in the table marks its cell and its plots. Tab goes from panel to "
-        "panel; y copies the tracks, to the clipboard and to a file."
+        "accumulator; choosing a track in the table marks its cell and its plots. w shows, of "
+        "initiators that weight votes, their standard deviation or the weighted votes. Tab goes from panel "
+        "to panel; y copies the tracks, to the clipboard and to a file."
     )
     DEFAULT_CSS = """
     LookView { layout: vertical; height: 1fr; }

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
@@ -30,10 +31,14 @@ from hough_tui.ui.widgets.plane_scene import PlaneScene, PlaneTrack
 from hough_tui.ui.widgets.track_grid import TrackGrid
 
 if TYPE_CHECKING:
+    from algorithms.hough.voting import Accumulator
     from hough_tui.experiments.look import TrialLook
 
 STATES = {FALSE: "false", FINDER: "found", DUPLICATE: "duplicate"}
 PANELS = ("plane", "accumulator", "tracks")
+
+DEVIATION = "deviation"
+"""What the standard deviation of the ρ that voted for a cell is called."""
 
 MOST_DRAWN = 300
 """Weaker tracks than these are not drawn: they would hide the plots."""
@@ -65,10 +70,12 @@ class LookPanel(Widget):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("y", "copy", "Copy the tracks", id="look.copy", show=False),
         Binding("v", "next_panel", "Plane, accumulator or tracks", id="look.panel", show=False),
+        Binding("w", "next_layer", "Votes, deviation or weighted votes", id="look.layer", show=False),
     ]
 
     layout_kind: reactive[str] = reactive("wide")
     panel: reactive[str] = reactive("plane")
+    layer: reactive[str] = reactive("votes")
 
     def __init__(self, classes: str | None = None) -> None:
         super().__init__(classes=classes)
@@ -101,7 +108,7 @@ class LookPanel(Widget):
             plane.highlight(np.zeros(0, np.int64))
         self.set_class(seen.accumulator is None, "without-accumulator")
         if seen.accumulator is not None:
-            self.query_one(Heatmap).show(heatmap_scene(seen))
+            self.query_one(Heatmap).show(heatmap_scene(seen, self.layer))
         self.query_one(TrackGrid).show(seen)
 
     # Which of the panels are seen
@@ -123,6 +130,17 @@ class LookPanel(Widget):
         """Go to the next panel."""
         self.panel = PANELS[(PANELS.index(self.panel) + 1) % len(PANELS)]
         self.take_focus()
+
+    def action_next_layer(self) -> None:
+        """Show votes, their standard deviation, or weighted votes in the accumulator."""
+        if self._seen is None or self._seen.accumulator is None:
+            return
+        known = list(layers(self._seen.accumulator))
+        if len(known) == 1:
+            self.notify(f"{self._seen.entry.name} counts votes as they are", timeout=3, markup=False)
+            return
+        self.layer = known[(known.index(self.layer) + 1) % len(known)] if self.layer in known else known[0]
+        self.query_one(Heatmap).show(heatmap_scene(self._seen, self.layer))
 
     def action_copy(self) -> None:
         """Copy the tracks as CSV, to the clipboard and to a file."""
@@ -233,7 +251,7 @@ def plane_scene(seen: TrialLook) -> PlaneScene:
     return PlaneScene(
         position,
         picture.plots.scan,
-        picture.scenario.region.box,
+        picture.scenario.box.plane,
         picture.scenario.unit.value,
         picture.origin,
         picture.paths,
@@ -241,19 +259,29 @@ def plane_scene(seen: TrialLook) -> PlaneScene:
     )
 
 
-def heatmap_scene(seen: TrialLook) -> HeatmapScene:
-    """Return the accumulator of a trial."""
+def layers(accumulator: Accumulator) -> dict[str, NDArray[Any]]:
+    """Return the arrays of an accumulator by what they are called; votes come first."""
+    known = {"votes": accumulator.votes, DEVIATION: accumulator.std, "weighted votes": accumulator.weighted}
+    return {name: values for name, values in known.items() if values is not None}
+
+
+def heatmap_scene(seen: TrialLook, layer: str = "votes") -> HeatmapScene:
+    """Return the accumulator of a trial, or another of its `layers` where it has that."""
     assert seen.accumulator is not None
+    known = layers(seen.accumulator)
+    shown = layer if layer in known else "votes"
     grid = seen.accumulator.grid
     cells = (
         grid.cell(float(theta), float(rho))
         for theta, rho in zip(seen.tracks.theta[:MOST_DRAWN], seen.tracks.rho[:MOST_DRAWN], strict=True)
     )
     return HeatmapScene(
-        seen.accumulator.votes,
+        known[shown],
         np.degrees(grid.theta),
         grid.rho,
         seen.picture.scenario.unit.value,
-        "votes",
+        shown,
         tuple(cell for cell in cells if cell is not None),
+        tuple((name, values) for name, values in known.items() if name != shown),
+        is_descending=shown == DEVIATION,
     )

@@ -158,7 +158,7 @@ class ScenarioView(Widget):
             PlaneScene(
                 drawn.plots.position[:, :2],
                 drawn.plots.scan,
-                scenario.region.box,
+                scenario.box.plane,
                 scenario.unit.value,
                 drawn.origin,
                 drawn.paths,

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.errors import RequestError
-from hough_tui.experiments.columns import TrialColumns
+from hough_tui.experiments.columns import PLAIN, TrialColumns
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import Cell, plan_run
 from hough_tui.experiments.results import result
@@ -158,6 +158,8 @@ class KeptRun(ShownRun):
                     "which ones they were; run it again to open its trials"
                 )
             arrays["trial"] = np.arange(row["trials"], dtype=np.int32)
+        # Runs of earlier versions do not know it.
+        arrays.setdefault("mixed", np.full(row["trials"], -1, np.int32))
         return RowTrials(cell, trial_columns(arrays))
 
     def document(self) -> dict[str, Any]:
@@ -199,11 +201,10 @@ def trial_columns(arrays: Mapping[str, NDArray[Any]]) -> TrialColumns:
     RequestError
         Where one is missing.
     """
-    names = [field.name for field in fields(TrialColumns)]
-    missing = [name for name in names if name not in arrays]
+    missing = [name for name in PLAIN if name not in arrays]
     if missing:
         raise RequestError(f"the run was kept without the columns {', '.join(missing)}")
-    return TrialColumns(**{name: arrays[name] for name in names})
+    return TrialColumns.of(arrays)
 
 
 def _cells(run: Run) -> list[Cell | None]:

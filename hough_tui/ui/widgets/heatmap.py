@@ -277,13 +277,13 @@ class Heatmap(Chart):
         if self._scene.is_empty:
             return []
         made, muted = inks(colours), ink(colours.muted)
-        low, high = self._scene.extremes
+        low, high = self._scene.ends
         if width >= ROOM_FOR_WIDE_SCALE:
             steps: Words = [(" ", made.style(level, level)) for level in table.tolist()]
         else:
             pairs = table.reshape(LEVELS // 2, 2).tolist()
             steps = [("▌", made.style(right, left)) for left, right in pairs]
-        return [(f"{low:.4g} ", muted), *steps, (f" {high:.4g}", muted)]
+        return [(f"{low} ", muted), *steps, (f" {high}", muted)]
 
 
 def _key(scene: HeatmapScene) -> tuple[float, ...]:

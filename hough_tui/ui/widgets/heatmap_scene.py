@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 from hough_tui.ui.drawing.axes import Axis, decimals_of
 from hough_tui.ui.drawing.viewport import Limits
 
+FAINTEST = 0.05
+"""How bright the greatest of descending values is, beside the span of all: brighter than none."""
+
 
 @dataclass(frozen=True, eq=False)
 class HeatmapScene:
@@ -27,6 +30,8 @@ class HeatmapScene:
     unit : of ρ
     label : what the values are
     marks : row and column of the cells that are tracks
+    beside : further values of the cells, which the read-out tells too, each with its label
+    is_descending : whether the least value is the brightest, and what is no finite number the darkest
     """
 
     values: NDArray[Any]
@@ -35,6 +40,8 @@ class HeatmapScene:
     unit: str
     label: str = "votes"
     marks: tuple[tuple[int, int], ...] = ()
+    beside: tuple[tuple[str, NDArray[Any]], ...] = ()
+    is_descending: bool = False
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -49,7 +56,18 @@ class HeatmapScene:
 
     @cached_property
     def comparable(self) -> NDArray[Any]:
-        """The values, what is not finite replaced by the least or the greatest that is."""
+        """The values as they are shown: the greater, the brighter.
+
+        What is not finite is replaced by the least or the greatest that is; where the values are
+        descending, by 0, and the others by how far they lie below the greatest, and a little more.
+        """
+        if self.is_descending and not self.is_empty:
+            finite = np.isfinite(self.values)
+            known = self.values[finite] if finite.any() else np.zeros(1)
+            span = float(known.max() - known.min()) or 1.0
+            shown: NDArray[Any] = np.zeros(self.values.shape)
+            shown[finite] = known.max() - known + FAINTEST * span
+            return shown
         if self.is_empty or np.issubdtype(self.values.dtype, np.integer):
             return self.values
         finite = np.isfinite(self.values)
@@ -72,6 +90,15 @@ class HeatmapScene:
         if self.is_empty:
             return 0.0, 0.0
         return min(0.0, float(self.comparable.min())), float(self.comparable.max())
+
+    @cached_property
+    def ends(self) -> tuple[str, str]:
+        """What the lowest and the highest level stand for, in words."""
+        if not self.is_descending:
+            low, high = self.extremes
+            return f"{low:.4g}", f"{high:.4g}"
+        finite = self.values[np.isfinite(self.values)]
+        return "none", f"{finite.min():.4g}" if finite.size else "none"
 
     @cached_property
     def peaks(self) -> NDArray[np.int64]:
@@ -122,13 +149,13 @@ class HeatmapScene:
         return across, Axis(*ends, "°", is_angle=True, only=_only(self.theta_deg))
 
     def words(self, row: int, column: int) -> tuple[str, str, str]:
-        """Return θ, ρ and value of a cell as text."""
+        """Return θ, ρ and the values of a cell as text, the value that is shown first."""
         theta = _centre(self.theta_deg, row)
         rho = _centre(self.rho, column)
-        value = self.values[row, column]
-        if np.issubdtype(self.values.dtype, np.integer):
-            return f"{theta}°", f"{rho} {self.unit}", f"{int(value)} {self.label}"
-        return f"{theta}°", f"{rho} {self.unit}", f"{float(value):.4g} {self.label}"
+        told = [
+            _value(values[row, column], label) for label, values in ((self.label, self.values), *self.beside)
+        ]
+        return f"{theta}°", f"{rho} {self.unit}", " · ".join(told)
 
     def at(self, other: HeatmapScene, limits: Limits) -> Limits:
         """Return the part of another scene with the θ and ρ of a part of this one."""
@@ -153,6 +180,12 @@ def spacing(centres: NDArray[np.float64]) -> tuple[float, float]:
     if len(centres) < 2:
         return (float(centres[0]) if len(centres) else 0.0), 1.0
     return float(centres[0]), float(centres[-1] - centres[0]) / (len(centres) - 1) or 1.0
+
+
+def _value(value: Any, label: str) -> str:
+    if isinstance(value, np.integer):
+        return f"{int(value)} {label}"
+    return f"{float(value):.4g} {label}" if np.isfinite(value) else f"no {label}"
 
 
 def _only(centres: NDArray[np.float64]) -> float | None:

@@ -9,7 +9,8 @@ from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import result
 from scenarios.files import load_set
-from scenarios.simulate import World, draw
+from scenarios.simulate import draw
+from scenarios.world import World
 
 TRIALS = 600
 

@@ -157,13 +157,29 @@ def test_columns_open_groups_and_named_vectors():
     ]
     assert columns["vy [km/s]"].path == ("velocity", 1)
     clutter = columns_of([PoissonClutter], Unit.KILOMETRE)
-    assert [column.title for column in clutter] == ["Over", "Rate", "Region x [km]", "Region y [km]"]
+    assert [column.label for column in clutter] == ["Over", "Rate", "Region x", "Region y", "Region z"]
     # What the one kind alone has stands where it stands in its declaration.
     clutter = columns_of([PoissonClutter, ExactClutter], Unit.KILOMETRE)
-    labels = ["Kind", "Over", "Rate", "Count", "Per", "Region x", "Region y"]
+    labels = ["Kind", "Over", "Rate", "Count", "Per", "Region x", "Region y", "Region z"]
     assert [column.label for column in clutter] == labels
     entries = columns_of([entry_model(known) for known in initiators().values()], Unit.KILOMETRE)
     assert [column.label for column in entries[:2]] == ["Name", "Initiator"]
+
+
+def test_vectors_have_as_many_columns_as_the_elements_have_numbers():
+    flat = Target(position=(1.0, 2.0), velocity=(3.0, 4.0))
+    high = Target(position=(1.0, 2.0, 5.0), velocity=(3.0, 4.0, 0.0))
+    labels = [column.label for column in columns_of([Target], Unit.METRE, [high])]
+    assert labels[:7] == ["Name", "x", "y", "z", "vx", "vy", "vz"]
+    assert [column.label for column in columns_of([Target], Unit.METRE, [flat])][:5] == labels[:3] + labels[
+        4:6
+    ]
+    place = next(field for field in described(high) if field.path == ("position",))
+    assert value_of(place, "1 2 3") == (1.0, 2.0, 3.0)
+    assert value_of(place, "1 2") == (1.0, 2.0)
+    refused = value_of(place, "1")
+    assert isinstance(refused, Unreadable)
+    assert "2 or 3 numbers" in refused.message
 
 
 def test_sweeps_are_read_name_by_name():
@@ -218,7 +234,8 @@ def test_edits_together_are_one_edit_of_what_holds_them(given):
 def test_new_elements_are_valid_and_have_names_of_their_own(given):
     assert Target.model_validate(starter(Target))
     assert PoissonClutter.model_validate(starter(PoissonClutter))
-    assert Scenario.model_validate(starter(Scenario, ["new"])).name == "new-2"
+    begun = {**starter(Scenario, ["new"]), "region": starter(Region)}
+    assert Scenario.model_validate(begun).name == "new-2"
     targets = given.scenarios[0].targets
     assert duplicate(targets[0], names_of(targets))["name"] == "rising-2"
     assert unused("rising-2", ["rising", "rising-2"]) == "rising-3"

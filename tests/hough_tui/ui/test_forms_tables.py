@@ -12,7 +12,7 @@ from tests.hough_tui.ui.test_forms_app import SCENARIO, FormApp, drive
 TARGETS, CLUTTER = (*SCENARIO, "targets"), (*SCENARIO, "clutter")
 X, Y, VX, VY, BIRTH, DEATH, SPREAD, SPEED = range(1, 9)
 """The columns of the table of targets, after the name."""
-KIND, OVER, RATE, COUNT, PER, REGION_X, REGION_Y = range(7)
+KIND, OVER, RATE, COUNT, PER, REGION_X, REGION_Y, REGION_Z = range(8)
 """The columns of the table of clutter."""
 
 
@@ -215,7 +215,7 @@ def test_the_mouse_edits_and_presses():
 def test_an_empty_region_of_clutter_shows_and_begins_as_that_of_the_scenario():
     async def journey(app, pilot):
         table = await at(app, pilot, CLUTTER, 0, REGION_X)
-        assert rows(table)[0] == ["poisson", "region", "50", "", "", "0, 100", "0, 100"]
+        assert rows(table)[0] == ["poisson", "region", "50", "", "", "0, 100", "0, 100", ""]
         await edit(pilot, "10 20", "enter")
         region = app.workspace.value((*CLUTTER, 0, "region"))
         assert (region.x, region.y) == ((10.0, 20.0), (0.0, 100.0))

@@ -170,3 +170,41 @@ def test_without_room_for_two_it_is_said_how_much_they_need(drive):
         await user.until(lambda: len(user.view.query("LookPanel")) == 2)
 
     drive(journey, "course-report", size=(130, 40))
+
+
+def test_the_accumulator_shows_votes_their_deviation_and_weighted_votes(drive):
+    async def journey(user):
+        panel = await look(user)
+        heatmap = panel.query_one(Heatmap)
+        heatmap.focus()
+        await user.press("w")  # the first initiator of the set counts votes as they are
+        assert panel.layer == "votes"
+        await user.press("i", "i", "i", "i")
+        await user.until(lambda: panel._seen.entry.initiator == "weighted")
+        await user.settle()
+        seen = panel._seen.accumulator
+        row, column = np.unravel_index(np.nanargmin(seen.std), seen.std.shape)
+        heatmap.move_cursor(int(row), int(column))
+        await user.press("w")
+        await user.settle()
+        assert panel.layer == "deviation"
+        scene = heatmap._scene
+        # The least deviation is the brightest, and cells without one are the darkest.
+        assert scene.strongest == (row, column)
+        assert (scene.comparable[~np.isfinite(seen.std)] == 0.0).all()
+        assert scene.comparable[np.isfinite(seen.std)].min() > 0.0
+        told = f"{seen.std[row, column]:.4g} deviation · {seen.votes[row, column]} votes"
+        assert told in scene.words(int(row), int(column))[2]
+        dark = np.argwhere(~np.isfinite(seen.std))[0]
+        assert "no deviation" in scene.words(*dark.tolist())[2]
+        await user.press("w")
+        await user.settle()
+        assert panel.layer == "weighted votes"
+        assert heatmap._scene.values is seen.weighted
+        await user.press("enter")
+        await user.screen("WhyPeak")
+        await user.sees("Weighted by their standard deviation")
+        await user.press("escape", "w")
+        assert panel.layer == "votes"
+
+    drive(journey, "thesis-five-targets")

@@ -163,6 +163,7 @@ def many(cell, count):
         errors,
         np.zeros(count, np.int64),
         random.random((count, 2)) < 0.1,
+        np.full(count, -1, np.int32),
     )
     return TrialTable(RowTrials(cell, columns))
 

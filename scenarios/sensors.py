@@ -1,0 +1,195 @@
+"""What measures: sensors with their noise, their sector and their scan times."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
+
+from algorithms.context import Box
+from algorithms.parameters import (
+    Declared,
+    Dimension,
+    Fraction,
+    NotNegative,
+    Number,
+    Positive,
+    parameter,
+)
+
+
+def _rising(bounds: tuple[float, float]) -> tuple[float, float]:
+    if bounds[0] >= bounds[1]:
+        raise ValueError(
+            f"[{bounds[0]:g}, {bounds[1]:g}] is given, which spans nothing; "
+            "the first bound must be less than the second"
+        )
+    return bounds
+
+
+Bounds = Annotated[tuple[Number, Number], AfterValidator(_rising)]
+Place = tuple[Number, Number] | tuple[Number, Number, Number]
+"""A vector in the plane, or in space."""
+
+Angle = Annotated[Number, Field(ge=-720, le=720)]
+Elevation = Annotated[Number, Field(ge=-90, le=90)]
+
+
+class Sensor(Declared):
+    """What every sensor has."""
+
+    kind: str = parameter("cartesian", help="how the sensor measures")
+    detection_probability: Fraction = parameter(
+        1.0, dimension=Dimension.FRACTION, help="probability Pd that a scan holds a plot of a target"
+    )
+    period: Positive | None = parameter(
+        None,
+        dimension=Dimension.TIME,
+        help="time between its scans, in seconds; none: the interval of the scenario",
+    )
+    first_scan: NotNegative = parameter(0.0, dimension=Dimension.TIME, help="time of its first scan")
+
+    @classmethod
+    def is_meant(cls, data: Mapping[str, Any]) -> bool:
+        """Return whether data are of this kind of sensor; without a kind they are of the cartesian one."""
+        return bool(sensor_kind(data) == cls.model_fields["kind"].default)
+
+
+class CartesianSensor(Sensor):
+    """A sensor that measures x, y and, in space, z with independent gaussian noise."""
+
+    kind: Literal["cartesian"] = parameter("cartesian", help="how the sensor measures")
+    sigma: NotNegative | tuple[NotNegative, NotNegative] | tuple[NotNegative, NotNegative, NotNegative] = (
+        parameter(
+            dimension=Dimension.LENGTH,
+            help="standard deviation of the noise, one for all axes or [on x, on y, in space on z]",
+        )
+    )
+
+    def axes(self, dimensions: int) -> tuple[float, ...]:
+        """Return the standard deviations of the noise on each axis."""
+        return self.sigma if isinstance(self.sigma, tuple) else (self.sigma,) * dimensions
+
+    @property
+    def dimensions(self) -> int | None:
+        """How many axes it measures: 2 or 3; None where it does not say."""
+        return len(self.sigma) if isinstance(self.sigma, tuple) else None
+
+    @property
+    def sector_box(self) -> Box | None:
+        """The box around what it sees; None: it sees everything."""
+        return None
+
+
+class PolarSensor(Sensor):
+    """A sensor that measures range, azimuth and, in space, elevation with independent gaussian noise.
+
+    It sees targets in its sector only. Its plots are converted to cartesian coordinates, with
+    their covariance, by the unscented transform; see `scenarios.conversion`.
+    """
+
+    kind: Literal["polar"] = parameter("polar", help="how the sensor measures")
+    position: Place = parameter((0.0, 0.0), dimension=Dimension.LENGTH, help="where it stands")
+    sigma_range: NotNegative = parameter(
+        dimension=Dimension.LENGTH, help="standard deviation of the noise on range"
+    )
+    sigma_azimuth_deg: NotNegative = parameter(
+        dimension=Dimension.ANGLE, help="standard deviation of the noise on azimuth, degrees"
+    )
+    sigma_elevation_deg: NotNegative | None = parameter(
+        None,
+        dimension=Dimension.ANGLE,
+        help="standard deviation of the noise on elevation, degrees; none: it measures in the plane",
+    )
+    range: Annotated[tuple[NotNegative, NotNegative], AfterValidator(_rising)] = parameter(
+        dimension=Dimension.LENGTH, help="[nearest, farthest] that it sees"
+    )
+    azimuth_deg: Annotated[tuple[Angle, Angle], AfterValidator(_rising)] = parameter(
+        (0.0, 360.0),
+        dimension=Dimension.ANGLE,
+        help="[first, last] azimuth that it sees, degrees clockwise from north (the y axis)",
+    )
+    elevation_deg: Annotated[tuple[Elevation, Elevation], AfterValidator(_rising)] | None = parameter(
+        None,
+        dimension=Dimension.ANGLE,
+        help="[lowest, highest] elevation that it sees, degrees up from the horizon; none: -90 to 90",
+    )
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        if self.azimuth_deg[1] - self.azimuth_deg[0] > 360.0:
+            span = self.azimuth_deg[1] - self.azimuth_deg[0]
+            raise ValueError(f"azimuth_deg spans {span:g}°; it may span 360° at the most")
+        if self.sigma_elevation_deg is None:
+            if self.elevation_deg is not None:
+                raise ValueError(
+                    "elevation_deg is given without sigma_elevation_deg; a sensor in space needs both"
+                )
+            if len(self.position) == 3:
+                raise ValueError("position has three numbers; without sigma_elevation_deg it has two")
+        return self
+
+    @property
+    def dimensions(self) -> int:
+        """How many coordinates it measures: 2 or 3."""
+        return 2 if self.sigma_elevation_deg is None else 3
+
+    @property
+    def sigmas(self) -> tuple[float, ...]:
+        """Standard deviations on range, azimuth and, in space, elevation; radians."""
+        noise = (self.sigma_range, math.radians(self.sigma_azimuth_deg))
+        return noise if self.sigma_elevation_deg is None else (*noise, math.radians(self.sigma_elevation_deg))
+
+    @property
+    def limits(self) -> tuple[tuple[float, float], ...]:
+        """Bounds of range, azimuth and elevation; radians."""
+        elevation = self.elevation_deg or (-90.0, 90.0)
+        return (
+            self.range,
+            (math.radians(self.azimuth_deg[0]), math.radians(self.azimuth_deg[1])),
+            (math.radians(elevation[0]), math.radians(elevation[1])),
+        )
+
+    @property
+    def station(self) -> tuple[float, ...]:
+        """Where it stands, with as many numbers as it measures."""
+        return (*self.position, 0.0) if len(self.position) < self.dimensions else self.position
+
+    @property
+    def sector_box(self) -> Box:
+        """The box around its sector."""
+        near, far = self.range
+        first, last = self.azimuth_deg
+        quarters = [angle for angle in range(-720, 721, 90) if first <= angle <= last]
+        azimuths = [math.radians(angle) for angle in (first, last, *quarters)]
+        elevations = self.limits[2] if self.dimensions == 3 else (0.0, 0.0)
+        level = [min(max(0.0, elevations[0]), elevations[1])]
+        grounds = [
+            distance * math.cos(elevation) for distance in (near, far) for elevation in (*elevations, *level)
+        ]
+        x = [ground * math.sin(azimuth) for ground in grounds for azimuth in azimuths]
+        y = [ground * math.cos(azimuth) for ground in grounds for azimuth in azimuths]
+        axes = [x, y]
+        if self.dimensions == 3:
+            axes.append(
+                [distance * math.sin(elevation) for distance in (near, far) for elevation in elevations]
+            )
+        return Box(
+            tuple(at + min(axis) for at, axis in zip(self.station, axes, strict=True)),
+            tuple(at + max(axis) for at, axis in zip(self.station, axes, strict=True)),
+        )
+
+
+def sensor_kind(given: Any) -> Any:
+    """Return what kind of sensor data or a model are."""
+    if isinstance(given, Mapping):
+        return given.get("kind", "cartesian")
+    return getattr(given, "kind", None)
+
+
+AnySensor = Annotated[
+    Annotated[CartesianSensor, Tag("cartesian")] | Annotated[PolarSensor, Tag("polar")],
+    Discriminator(sensor_kind),
+]

@@ -1,0 +1,140 @@
+"""A scenario as the drawing kernel takes it: its arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenarios.model import Clutter, ExactClutter, PoissonClutter, Scenario
+from scenarios.sensors import CartesianSensor, PolarSensor
+
+Array = NDArray[np.float64]
+
+BOX, VOLUME, SECTOR = 0, 1, 2
+"""Where clutter is uniform: in a box, in a sensor's volume, in its coordinates."""
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """A scenario as the drawing kernel takes it; d is its number of dimensions, 2 or 3.
+
+    Attributes
+    ----------
+    position, velocity, spread : float64 (targets, d), as each appears, and how far from there it may
+    begin, end : float64 (targets,), times between which each is there
+    scan_time : float64 (scans,), of all sensors, in order
+    scan_sensor, scan_number : int64 (scans,), which sensor each scan is of, and its number there
+    is_polar : whether the sensors measure range, azimuth and elevation; all do or none does
+    station : float64 (sensors, d), where each stands
+    sigma : float64 (sensors, d), on x, y, z or on range, azimuth, elevation; radians
+    limits : float64 (sensors, d, 2), the sector of each; infinite for one that sees everything
+    detection_probability : float64 (sensors,)
+    counts : float64, the distribution functions of the sources' numbers of plots a scan, end to end;
+        that of a source with a fixed number is empty
+    count_offsets : int64 (sources + 1,), where each source's distribution begins
+    fixed : int64 (sources, 2), the fixed number of plots of each scan, and that of the batch
+    uniform : int64 (sources,), `BOX`, `VOLUME` or `SECTOR`
+    lower, size : float64 (sources, d), the boxes of the sources of clutter
+    """
+
+    position: Array
+    velocity: Array
+    spread: Array
+    begin: Array
+    end: Array
+    scan_time: Array
+    scan_sensor: NDArray[np.int64]
+    scan_number: NDArray[np.int64]
+    is_polar: NDArray[np.bool_]
+    station: Array
+    sigma: Array
+    limits: Array
+    detection_probability: Array
+    counts: Array
+    count_offsets: NDArray[np.int64]
+    fixed: NDArray[np.int64]
+    uniform: NDArray[np.int64]
+    lower: Array
+    size: Array
+
+    @classmethod
+    def of(cls, scenario: Scenario) -> World:
+        """Return the arrays of a scenario."""
+        axes, targets, sensors = scenario.dimensions, scenario.targets, scenario.sensors
+        lifetimes = np.array([target.lifetime(scenario.interval) for target in targets]).reshape(-1, 2)
+        time, sensor, number = zip(*scenario.timetable, strict=True)
+        clutter = scenario.clutter
+        tables = [
+            poisson_distribution(source.rate) if isinstance(source, PoissonClutter) else np.zeros(0)
+            for source in clutter
+        ]
+        boxes = [scenario.area(source) for source in clutter]
+        lower = _columns([box.lower for box in boxes], axes)
+        return cls(
+            _columns([target.position for target in targets], axes),
+            _columns([target.velocity for target in targets], axes),
+            _columns([target.spread_axes for target in targets], axes),
+            np.ascontiguousarray(lifetimes[:, 0]),
+            np.ascontiguousarray(lifetimes[:, 1]),
+            np.array(time, dtype=float),
+            np.array(sensor, dtype=np.int64),
+            np.array(number, dtype=np.int64),
+            np.array([isinstance(found, PolarSensor) for found in sensors]),
+            _columns([_station(found, axes) for found in sensors], axes),
+            _columns([_sigma(found, axes) for found in sensors], axes),
+            np.array([_limits(found, axes) for found in sensors], dtype=float),
+            np.array([found.detection_probability for found in sensors], dtype=float),
+            np.concatenate(tables) if tables else np.zeros(0),
+            np.cumsum([0, *map(len, tables)], dtype=np.int64),
+            np.array([_fixed_numbers(source) for source in clutter], dtype=np.int64).reshape(-1, 2),
+            np.array([_uniform(source) for source in clutter], dtype=np.int64),
+            lower,
+            _columns([box.upper for box in boxes], axes) - lower,
+        )
+
+
+def _columns(vectors: list[tuple[float, ...]], axes: int) -> Array:
+    return np.array(vectors, dtype=float).reshape(-1, axes)
+
+
+def _station(sensor: CartesianSensor | PolarSensor, axes: int) -> tuple[float, ...]:
+    return sensor.station if isinstance(sensor, PolarSensor) else (0.0,) * axes
+
+
+def _sigma(sensor: CartesianSensor | PolarSensor, axes: int) -> tuple[float, ...]:
+    return sensor.sigmas if isinstance(sensor, PolarSensor) else sensor.axes(axes)
+
+
+def _limits(sensor: CartesianSensor | PolarSensor, axes: int) -> tuple[tuple[float, float], ...]:
+    everything = ((-np.inf, np.inf),) * axes
+    return sensor.limits[:axes] if isinstance(sensor, PolarSensor) else everything
+
+
+def _uniform(source: Clutter) -> int:
+    return {"volume": VOLUME, "sector": SECTOR}.get(source.over, BOX)
+
+
+def _fixed_numbers(source: Clutter) -> tuple[int, int]:
+    if not isinstance(source, ExactClutter):
+        return 0, 0
+    return (source.count, 0) if source.per == "scan" else (0, source.count)
+
+
+@lru_cache(maxsize=64)
+def poisson_distribution(rate: float) -> Array:
+    """Return the distribution function of a Poisson number at 0, 1, 2, …, as far as it is below 1.
+
+    Parameters
+    ----------
+    rate : the mean, ≥ 0
+    """
+    if rate == 0.0:
+        return np.ones(1)
+    numbers = np.arange(int(rate + 12.0 * np.sqrt(rate)) + 40)
+    log_factorial = np.concatenate([[0.0], np.cumsum(np.log(numbers[1:]))])
+    distribution: Array = np.cumsum(np.exp(numbers * np.log(rate) - rate - log_factorial))
+    distribution /= distribution[-1]
+    return distribution

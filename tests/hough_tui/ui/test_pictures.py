@@ -1,0 +1,83 @@
+"""Pictures of the whole application, compared with pictures that people have looked at.
+
+`pytest --snapshot-update tests/hough_tui/ui/test_pictures.py` takes them anew; then look at them.
+"""
+
+from datetime import datetime
+from types import SimpleNamespace
+
+import pytest
+from pytest_textual_snapshot import SVGImageExtension
+
+import hough_tui.experiments.chunks as chunks
+import hough_tui.experiments.look as looking
+import hough_tui.experiments.store as store
+from hough_tui.experiments.engine import Job
+from hough_tui.ui.widgets.heatmap import Heatmap
+
+SIZES = [(80, 24), (160, 48)]
+
+
+class Noon(datetime):
+    """A clock that stands still."""
+
+    @classmethod
+    def now(cls, tz=None):
+        return cls(2026, 1, 5, 12, 0, 0, tzinfo=tz)
+
+
+@pytest.fixture
+def still_clocks(monkeypatch):
+    """Let nothing that is shown depend on this machine or on this day."""
+    monkeypatch.setattr(looking, "time", SimpleNamespace(perf_counter=lambda: 0.0))
+    monkeypatch.setattr(chunks, "time", SimpleNamespace(thread_time=lambda: 0.0))
+    monkeypatch.setattr(Job, "seconds", property(lambda job: 1.0))
+    monkeypatch.setattr(store, "datetime", Noon)
+    monkeypatch.setattr(store, "secrets", SimpleNamespace(token_hex=lambda count: "0" * 2 * count))
+
+
+@pytest.fixture
+def picture(snapshot):
+    """Return a function that compares what is on the screen with the picture of a name."""
+    kept = snapshot.use_extension(SVGImageExtension)
+
+    async def compare(user, name):
+        await user.still()
+        assert user.app.export_screenshot(title="hough-tui", simplify=True) == kept(name=name)
+
+    return compare
+
+
+@pytest.mark.parametrize("size", SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
+def test_the_views_look_as_they_did(drive, still_clocks, picture, size):
+    async def journey(user):
+        await user.screen("Welcome")
+        await picture(user, "welcome")
+        await user.press("enter")
+        await user.warm()
+        await picture(user, "scenario")
+        await user.go("f3")
+        await picture(user, "initiator")
+        panel = (await user.go("f4")).query_one("LookPanel")
+        await user.until(lambda: panel._seen)
+        await picture(user, "look")
+        heatmap = panel.query_one(Heatmap)
+        if not heatmap.size.area:
+            await user.press("v")
+            await picture(user, "accumulator")
+        heatmap.focus()
+        await user.press("enter")
+        await user.screen("WhyPeak")
+        await picture(user, "why-this-peak")
+        await user.press("escape")
+        await user.go("f6")
+        user.view.query("RunField").first().focus()
+        await user.type("40")
+        await user.press("f5")
+        await user.until(lambda: not user.view.is_at_work and user.view.query_one("RatePanel").display)
+        await user.sees("240 trials in")
+        await picture(user, "monte-carlo")
+        await user.go("f7")
+        await picture(user, "results")
+
+    drive(journey, size=size)
