@@ -14,6 +14,24 @@ from algorithms.clustering.points import Points
 from algorithms.errors import RequestError
 
 
+class TooFewPoints(RequestError):
+    """A scan has fewer different points than k-means is to find targets.
+
+    Attributes
+    ----------
+    number : of targets that are to be found
+    different : number of different points
+    scan : which one
+    """
+
+    def __init__(self, number: int, different: int, scan: int) -> None:
+        super().__init__(
+            f"scan {scan}: k-means is to find {number} targets among {different} different points; give a "
+            "smaller number, or leave the scan out"
+        )
+        self.number, self.different, self.scan = number, different, scan
+
+
 def compared_sets(points: Points, parameters: Dbscan | KMeans) -> Sets:
     """Return the sets that DBSCAN or k-means makes of the points of each scan.
 
@@ -22,8 +40,9 @@ def compared_sets(points: Points, parameters: Dbscan | KMeans) -> Sets:
     Raises
     ------
     RequestError
-        Where scikit-learn is not installed, or a scan has fewer different points than k-means is to
-        find targets.
+        Where scikit-learn is not installed.
+    TooFewPoints
+        Where k-means is to find more targets than a scan has different points.
 
     References
     ----------
@@ -45,10 +64,7 @@ def compared_sets(points: Points, parameters: Dbscan | KMeans) -> Sets:
         else:
             different = len(np.unique(own, axis=0))
             if different < parameters.number:
-                raise RequestError(
-                    f"scan {scan}: k-means is to find {parameters.number} targets among {different} "
-                    "different points; give a smaller number, or leave the scan out"
-                )
+                raise TooFewPoints(parameters.number, different, scan)
             model = learn.KMeans(parameters.number, n_init=10, random_state=parameters.seed)
         order, sizes = _grouped(model.fit_predict(own))
         orders.append(first + order)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from algorithms.clustering.clusters import NONE, Clusters
 from algorithms.clustering.ellipse import Ellipse, moments
 from algorithms.clustering.parameters import CorrectedPatent, Recommended
-from algorithms.clustering.splitting import DOPPLER, WHOLE, Rule, Splits
+from algorithms.clustering.splitting import DOPPLER, SLACK, WHOLE, Rule, Splits
 
 
 class Verdict(StrEnum):
@@ -115,8 +115,8 @@ def _why(ellipse: Ellipse, parameters: Recommended | CorrectedPatent, verdict: V
         ]
     if verdict == Verdict.TOO_FEW:
         return f"{count} of at least {parameters.least_points} points"
-    wide = [f"{name} {size:.4g} > {most:g}" for name, size, most in sizes if size > most]
-    fitting = ", ".join(f"{name} {size:.4g} ≤ {most:g}" for name, size, most in sizes if size <= most)
+    wide = [f"{name} {size:.4g} > {most:g}" for name, size, most in sizes if size > most * SLACK]
+    fitting = ", ".join(f"{name} {size:.4g} ≤ {most:g}" for name, size, most in sizes if size <= most * SLACK)
     if verdict == Verdict.SPLIT:
         return ", ".join(wide)
     return ", ".join([*wide, "no gap to split at"]) if wide else fitting

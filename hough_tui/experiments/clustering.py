@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.clustering.clusters import NONE, Clusters
+from algorithms.clustering.comparisons import TooFewPoints
 from algorithms.clustering.ellipse import Ellipse
 from algorithms.clustering.modes import cluster, cluster_with_splits
 from algorithms.clustering.parameters import MODES, Clustering, SplittingClustering
@@ -106,7 +107,11 @@ def cluster_recording(recording: PointRecording, parameters: Clustering) -> Clus
     nothing = np.zeros(0)
     cluster(Points.of(nothing, nothing, nothing), parameters)
     began = time.perf_counter()
-    clusters, splits = cluster_with_splits(recording.points, parameters)
+    try:
+        clusters, splits = cluster_with_splits(recording.points, parameters)
+    except TooFewPoints as error:
+        # By the scan's number in the file.
+        raise TooFewPoints(error.number, error.different, int(recording.scans[error.scan])) from None
     return Clustered(parameters, recording, clusters, splits, time.perf_counter() - began)
 
 

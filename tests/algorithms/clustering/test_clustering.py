@@ -217,6 +217,10 @@ def test_why_a_set_is_split_or_not():
         "range extent 1.633 ≤ 16.31, Doppler extent 1.633 ≤ 12.17",
         "1 of at least 4 points",
     ]
+    # Rounding does not make a set too wide, nor say so.
+    exact = PATENT.model_copy(update={"range_extent": math.sqrt(2.0) * (1.0 - 1e-12)})
+    clusters, splits = cluster_with_splits(points_of([0.0, 1.0], [0.0, 0.0]), exact)
+    assert [step.why for step in steps(splits, clusters, exact, 0)] == ["chord 1.414 ≤ 1.41421"]
     # Cells as large as a target: one place is too wide, and there is nothing to split.
     coarse = Recommended(range_extent=1.0, doppler_extent=1.0, range_cell=4.0)
     clusters, splits = cluster_with_splits(points_of(np.ones(5), np.ones(5)), coarse)
