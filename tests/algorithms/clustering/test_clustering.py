@@ -300,6 +300,14 @@ def test_dense_points_without_a_gap_are_halved():
     assert np.bincount(cluster(points, RECOMMENDED).label).tolist() == [16] * 4
 
 
+@pytest.mark.parametrize("unit", [1.0, 0.1, *(np.arange(1, 40) / 7.0)])
+def test_of_equal_gaps_equally_far_from_the_centre_the_lower_is_taken_in_any_unit(unit):
+    r = unit * np.repeat([10.0, 40.0, 70.0], 4)
+    parameters = Recommended(range_extent=unit * 9.0, doppler_extent=9.0, range_cell=unit)
+    splits = cluster_with_splits(points_of(r, np.zeros(12)), parameters)[1]
+    assert splits.cut[splits.axis == RANGE].tolist() == [unit * 10.0, unit * 40.0]
+
+
 def test_amplitudes():
     r, d = np.array([0.0, 1.0, 2.0, 3.0]), np.array([0.0, 0.0, 1.0, 1.0])
     dark = cluster(points_of(r, d, np.zeros(4)), RECOMMENDED)

@@ -101,7 +101,7 @@ def test_a_picture_keeps_its_size(drawn, width, height):
 
 def test_a_picture_shows_where_plots_are():
     square = np.array([(0, 0), (0, 2), (2, 0), (2, 2)], float)
-    place = np.concatenate([square, square + (80, 40)])
+    place = np.concatenate([square, square + np.array([80, 40])])
     clusters = cluster(Points.of(*place.T, np.ones(8)), Recommended(**EXTENTS))
     lines = cluster_chart(clusters, 0, 80, 24, colour=False).split("\n")
     at = {
