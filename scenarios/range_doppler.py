@@ -32,6 +32,7 @@ class ExtendedTarget:
     Attributes
     ----------
     range, doppler : its centre, in cells
+    scatter : how far the centre of a trial lies from there at most, evenly, in range and in Doppler
     points : how many it gives in a scan
     spread : standard deviations of its points in range and in Doppler
     correlation : of the two, −1 to 1
@@ -39,6 +40,7 @@ class ExtendedTarget:
 
     range: float
     doppler: float
+    scatter: tuple[float, float] = (0.5, 0.5)
     points: int = 24
     spread: tuple[float, float] = SPREAD
     correlation: float = 0.0
@@ -50,7 +52,7 @@ class RangeDopplerScene:
 
     Attributes
     ----------
-    targets : their centres move from trial to trial by up to half a cell, as cells are nothing to them
+    targets : each with a scatter of half a cell at least, as cells are nothing to them
     interference : number of further points in a scan, uniform over `region`
     region : lowest and highest cell in range, and in Doppler
     """
@@ -76,16 +78,21 @@ class SceneDraw:
     centres: Array
 
 
+APART = (ExtendedTarget(30, 35, (8.0, 12.0)), ExtendedTarget(75, 55, (8.0, 12.0)))
+"""Two targets far from each other in range, and in some trials in Doppler."""
+
 SCENES: dict[str, RangeDopplerScene] = {
     "same Doppler": RangeDopplerScene((ExtendedTarget(30, 45), ExtendedTarget(75, 45))),
-    "separated": RangeDopplerScene((ExtendedTarget(30, 30), ExtendedTarget(75, 65))),
-    "unequal": RangeDopplerScene((ExtendedTarget(30, 40, points=60), ExtendedTarget(60, 45, points=12))),
+    "separated": RangeDopplerScene(APART),
+    "unequal": RangeDopplerScene(
+        (ExtendedTarget(30, 40, (2.0, 4.0), points=60), ExtendedTarget(60, 45, (2.0, 4.0), points=12))
+    ),
     "diagonal": RangeDopplerScene(
-        tuple(ExtendedTarget(at, at, correlation=0.7) for at in (15.0, 45.0, 75.0))
+        tuple(ExtendedTarget(at, at, (2.0, 2.0), correlation=0.7) for at in (15.0, 45.0, 75.0))
     ),
     "same range": RangeDopplerScene((ExtendedTarget(60, 25), ExtendedTarget(60, 65))),
-    "interference": RangeDopplerScene((ExtendedTarget(30, 30), ExtendedTarget(75, 65)), interference=10),
-    "close": RangeDopplerScene((ExtendedTarget(50, 40), ExtendedTarget(70, 48))),
+    "interference": RangeDopplerScene(APART, interference=10),
+    "close": RangeDopplerScene((ExtendedTarget(50, 40, (1.0, 2.0)), ExtendedTarget(71, 47, (1.0, 2.0)))),
 }
 """The seven kinds of scene by which methods of clustering are compared."""
 
@@ -96,7 +103,7 @@ def _draw(seed, first_trial, trials, targets, counts, interference, lower, size)
 
     Parameters
     ----------
-    targets : float64 (targets, 5), range, Doppler, spread in both, correlation
+    targets : float64 (targets, 7), range, Doppler, scatter in both, spread in both, correlation
     counts : int64 (targets,), points of each
     interference : number of further points
     lower, size : float64 (2,), the region
@@ -109,9 +116,10 @@ def _draw(seed, first_trial, trials, targets, counts, interference, lower, size)
     for k in range(trials):
         trial = first_trial + k
         for target in range(len(counts)):
-            r, d, spread_r, spread_d, correlation = targets[target]
+            r, d, scatter_r, scatter_d, spread_r, spread_d, correlation = targets[target]
             u, v = uniform_pair(seed, 0, 0, target + 1, trial)
-            centres[k, target, 0], centres[k, target, 1] = r + u - 0.5, d + v - 0.5
+            centres[k, target, 0] = r + scatter_r * (2.0 * u - 1.0)
+            centres[k, target, 1] = d + scatter_d * (2.0 * v - 1.0)
             for point in range(counts[target]):
                 x, y = normal_pair(seed, 2 * point + 1, 0, target + 1, trial)
                 chance, _ = uniform_pair(seed, 2 * point + 2, 0, target + 1, trial)
@@ -140,11 +148,14 @@ def draw_scene(scene: RangeDopplerScene, seed: int, trial: int, trials: int = 1)
     seed : of the draws, 0 to 2⁶⁴ − 1
     trial, trials : the first one, and how many
     """
-    given = [(target.range, target.doppler, *target.spread, target.correlation) for target in scene.targets]
+    given = [
+        (target.range, target.doppler, *target.scatter, *target.spread, target.correlation)
+        for target in scene.targets
+    ]
     counts = np.array([target.points for target in scene.targets], np.int64)
     bounds = np.array(scene.region, float)
     points, origin, centres = _draw(
-        np.uint64(seed), trial, trials, np.array(given, float).reshape(-1, 5), counts,
+        np.uint64(seed), trial, trials, np.array(given, float).reshape(-1, 7), counts,
         scene.interference, bounds[:, 0].copy(), bounds[:, 1] - bounds[:, 0],
     )  # fmt: skip
     offsets = np.arange(trials + 1, dtype=np.int64) * (int(counts.sum()) + scene.interference)

@@ -49,33 +49,36 @@ def compared_sets(points: Points, parameters: Dbscan | KMeans) -> Sets:
     M. Ester et al., "A density-based algorithm for discovering clusters", KDD 1996.
     S. Lloyd, "Least squares quantization in PCM", IEEE Trans. Information Theory 28, 1982.
     """
-    learn = _scikit_learn(parameters.mode)
+    learn, threads = _scikit_learn(parameters.mode)
     scaled = np.column_stack(
         [points.range / parameters.range_extent, points.doppler / parameters.doppler_extent]
     )
     orders, counts, scans = [], [], []
-    for scan in range(points.scans):
-        first, end = points.offsets[scan], points.offsets[scan + 1]
-        if first == end:
-            continue
-        own = scaled[first:end]
-        if isinstance(parameters, Dbscan):
-            model = learn.DBSCAN(eps=parameters.eps, min_samples=parameters.least_points)
-        else:
-            different = len(np.unique(own, axis=0))
-            if different < parameters.number:
-                raise TooFewPoints(parameters.number, different, scan)
-            model = learn.KMeans(parameters.number, n_init=10, random_state=parameters.seed)
-        order, sizes = _grouped(model.fit_predict(own))
-        orders.append(first + order)
-        counts.append(sizes)
-        scans.append(np.full(len(sizes), scan, np.int64))
+    # For a scan's few points, threads that wait for each other take longer than the work.
+    with threads.threadpool_limits(1):
+        for scan in range(points.scans):
+            first, end = points.offsets[scan], points.offsets[scan + 1]
+            if first == end:
+                continue
+            own = scaled[first:end]
+            if isinstance(parameters, Dbscan):
+                model = learn.DBSCAN(eps=parameters.eps, min_samples=parameters.least_points)
+            else:
+                different = len(np.unique(own, axis=0))
+                if different < parameters.number:
+                    raise TooFewPoints(parameters.number, different, scan)
+                model = learn.KMeans(parameters.number, n_init=10, random_state=parameters.seed)
+            order, sizes = _grouped(model.fit_predict(own))
+            orders.append(first + order)
+            counts.append(sizes)
+            scans.append(np.full(len(sizes), scan, np.int64))
     return _joined(orders, counts, scans)
 
 
-def _scikit_learn(mode: str) -> Any:
+def _scikit_learn(mode: str) -> tuple[Any, Any]:
+    """Return scikit-learn's clustering, and the module by which it controls its threads."""
     try:
-        return importlib.import_module("sklearn.cluster")
+        return importlib.import_module("sklearn.cluster"), importlib.import_module("threadpoolctl")
     except ImportError as error:
         raise RequestError(
             f"mode {mode} needs scikit-learn, which cannot be imported ({error}); install hough-tui with its "

@@ -33,7 +33,7 @@ def test_targets_are_the_same_without_interference():
 
 def test_points_have_the_declared_moments():
     trials, points = 400, 50
-    target = ExtendedTarget(30.0, -20.0, points, (5.0, 3.0), -0.6)
+    target = ExtendedTarget(30.0, -20.0, (3.0, 0.5), points, (5.0, 3.0), -0.6)
     scene = RangeDopplerScene((target,), 20, ((10.0, 60.0), (-30.0, -10.0)))
     drawn = draw_scene(scene, 1, 0, trials)
     own = drawn.origin == 0
@@ -46,8 +46,9 @@ def test_points_have_the_declared_moments():
     assert np.cov(away.reshape(2, -1)) == pytest.approx(expected, rel=0.05)
     assert away.reshape(2, -1).mean(axis=1) == pytest.approx(0.0, abs=4.0 * 5.0 / np.sqrt(number))
     shift = drawn.centres[:, 0] - (30.0, -20.0)
-    assert np.abs(shift).max() <= 0.5
-    assert shift.var(axis=0) == pytest.approx(1.0 / 12.0, rel=0.25)
+    assert (np.abs(shift).max(axis=0) <= (3.0, 0.5)).all()
+    assert shift.var(axis=0) == pytest.approx([9.0 / 3.0, 0.25 / 3.0], rel=0.25)
+    assert shift.mean(axis=0) == pytest.approx([0.0, 0.0], abs=4.0 * np.sqrt(3.0 / trials))
     stray = place[:, ~own]
     assert stray.min(axis=1) == pytest.approx([10.0, -30.0])
     assert stray.max(axis=1) == pytest.approx([60.0, -10.0])
