@@ -9,6 +9,7 @@ import statistics
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 
 import numpy as np
 from measure import ratio, rounds, verdict
@@ -83,7 +84,7 @@ def two_threads(points: Points) -> None:
     """Print how two threads share scans, cut into chunks."""
     bounds = np.linspace(0, points.scans, CHUNKS + 1).astype(int)
     chunks = []
-    for first, end in zip(bounds[:-1], bounds[1:], strict=True):
+    for first, end in pairwise(bounds):
         begin, stop = points.offsets[first], points.offsets[end]
         columns = (points.range[begin:stop], points.doppler[begin:stop], points.amplitude[begin:stop])
         chunks.append(Points.of(*columns, points.offsets[first : end + 1] - begin))

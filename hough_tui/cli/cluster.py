@@ -95,4 +95,4 @@ def print_plane(found: Any) -> None:
     """Print a chart of the points of the first scan, and of its clusters."""
     from hough_tui.reports.charts import cluster_chart
 
-    print(cluster_chart(found.clusters, 0, min(output_width(), 120), 36, is_coloured()))
+    print(cluster_chart(found.clusters, 0, found.radius, min(output_width(), 120), 36, is_coloured()))

@@ -50,6 +50,12 @@ class Clustered:
     splits: Splits | None
     seconds: float
 
+    @property
+    def radius(self) -> float:
+        """How far from its centre a cluster reaches, in standard deviations; √2 where the mode has none."""
+        is_bounded = isinstance(self.parameters, SplittingClustering)
+        return cast("SplittingClustering", self.parameters).radius if is_bounded else math.sqrt(2.0)
+
     def steps(self, scan: int) -> list[Step]:
         """Return the steps of one scan; none of a mode that does not split."""
         if self.splits is None:

@@ -172,13 +172,14 @@ def plane_chart(
     return f"{title}\n{_drawn(figure, colour)}"
 
 
-def cluster_chart(clusters: Clusters, scan: int, width: int, height: int, colour: bool) -> str:
+def cluster_chart(clusters: Clusters, scan: int, radius: float, width: int, height: int, colour: bool) -> str:
     """Return a picture of the points, ellipses and plots of one scan, Doppler upwards.
 
     Parameters
     ----------
     clusters : of any number of scans
     scan : index of the one that is drawn
+    radius : of the ellipses, in standard deviations
     width, height : of the whole picture, in cells
     colour : whether to colour each cluster; its number stands at its plot in any case
     """
@@ -196,7 +197,7 @@ def cluster_chart(clusters: Clusters, scan: int, width: int, height: int, colour
     figure.xlabel("range")
     own = np.flatnonzero(clusters.scan == scan).tolist()
     for index in own:
-        along, doppler = clusters.ellipse(index).outline()
+        along, doppler = clusters.ellipse(index).outline(radius)
         paint = _paint(index, colour)
         figure.plot(across.reach(along).tolist(), up.reach(doppler).tolist(), marker="·", color=paint)
     # Points last but for the plots: a dot of an outline must not hide one.
@@ -214,6 +215,7 @@ def cluster_chart(clusters: Clusters, scan: int, width: int, height: int, colour
     title = f"Doppler · {_count(len(points), 'point')} · {_count(len(own), 'cluster')}"
     loose = int(np.count_nonzero(label < 0))
     title += f" · {loose:,} left out" if loose else ""
+    title += f" · ellipses of {radius:.3g} σ" if own else ""
     return f"{title}\n{_drawn(figure, colour)}"
 
 

@@ -156,7 +156,7 @@ def test_tables_and_picture(cli, points):
     assert "splits of scan 3" in out
     assert "split in Doppler at -60, gap 70.0" in out
     assert "1 of at least 4 points" in out
-    assert "Doppler · 9 points · 2 clusters · 1 left out" in out
+    assert "Doppler · 9 points · 2 clusters · 1 left out · ellipses of 2.5 σ" in out
     assert out.count("✚") == 2
     assert "\x1b" not in out
     assert max(map(len, out.splitlines())) <= 110

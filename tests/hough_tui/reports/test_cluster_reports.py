@@ -85,16 +85,16 @@ def plain(text):
     return re.sub(r"\x1b\[[0-9;]*m", "", text)
 
 
-@pytest.mark.parametrize(("width", "height"), [(50, 14), (80, 24), (160, 48)])
+@pytest.mark.parametrize(("width", "height"), [(66, 16), (80, 24), (160, 48)])
 def test_a_picture_keeps_its_size(drawn, width, height):
     clusters = cluster(drawn, Recommended(**EXTENTS))
-    text = cluster_chart(clusters, 1, width, height, colour=False)
+    text = cluster_chart(clusters, 1, 2.5, width, height, colour=False)
     lines = text.split("\n")
     assert "\x1b" not in text
     assert len(lines) <= height
     assert max(map(cell_len, lines)) <= width
     assert text.count("✚") == 2
-    coloured = cluster_chart(clusters, 1, width, height, colour=True)
+    coloured = cluster_chart(clusters, 1, 2.5, width, height, colour=True)
     assert "\x1b" in coloured
     assert [line.rstrip() for line in plain(coloured).split("\n")] == lines
 
@@ -103,7 +103,7 @@ def test_a_picture_shows_where_plots_are():
     square = np.array([(0, 0), (0, 2), (2, 0), (2, 2)], float)
     place = np.concatenate([square, square + np.array([80, 40])])
     clusters = cluster(Points.of(*place.T, np.ones(8)), Recommended(**EXTENTS))
-    lines = cluster_chart(clusters, 0, 80, 24, colour=False).split("\n")
+    lines = cluster_chart(clusters, 0, 2.5, 80, 24, colour=False).split("\n")
     at = {
         number: (row, line.index(f"✚{number}"))
         for row, line in enumerate(lines)
@@ -118,6 +118,15 @@ def test_a_picture_shows_where_plots_are():
 def test_a_picture_of_one_point_and_of_none():
     for r in ([5.0], []):
         clusters = cluster(Points.of(r, r, r), CorrectedPatent(range_extent=16.0))
-        text = cluster_chart(clusters, 0, 60, 20, colour=False)
+        text = cluster_chart(clusters, 0, 1.414, 60, 20, colour=False)
         assert text.startswith(f"Doppler · {len(r)} point{'' if len(r) == 1 else 's'} · {len(r)} cluster")
         assert max(map(len, text.split("\n"))) <= 60
+
+
+def test_the_outline_parts_kept_points_from_others(drawn):
+    """The drawn ellipse is that of the radius: a greater one reaches farther."""
+    clusters = cluster(drawn, Recommended(**EXTENTS))
+    texts = [cluster_chart(clusters, 0, radius, 120, 40, colour=False) for radius in (0.5, 2.5)]
+    rows = [[row for row, line in enumerate(text.split("\n")[1:]) if "··" in line] for text in texts]
+    assert rows[1][-1] - rows[1][0] > rows[0][-1] - rows[0][0]
+    assert "ellipses of 2.5 σ" in texts[1]
