@@ -186,7 +186,10 @@ def cluster_chart(clusters: Clusters, scan: int, radius: float, width: int, heig
     points = clusters.points.scan(scan)
     rows = slice(clusters.points.offsets[scan], clusters.points.offsets[scan + 1])
     label = np.where(clusters.kept[rows], clusters.label[rows], -1)
-    across_span, up_span = span(points.range, 0.05), span(points.doppler, 0.05)
+    own = np.flatnonzero(clusters.scan == scan).tolist()
+    outlines = [clusters.ellipse(index).outline(radius) for index in own]
+    across_span = span(np.concatenate([points.range, *(along for along, _ in outlines)]), 0.05)
+    up_span = span(np.concatenate([points.doppler, *(doppler for _, doppler in outlines)]), 0.05)
     marks = [ticks(*across_span, max(2, width // 12)), ticks(*up_span, max(2, height // 4))]
     names = [[f"{mark:.10g}" for mark in on_axis] for on_axis in marks]
     across = Axis(*across_span, max(2, width - 2 - max(map(len, names[1]), default=0)))
@@ -195,9 +198,7 @@ def cluster_chart(clusters: Clusters, scan: int, radius: float, width: int, heig
     figure.xticks(marks[0], names[0])
     figure.yticks(marks[1], names[1])
     figure.xlabel("range")
-    own = np.flatnonzero(clusters.scan == scan).tolist()
-    for index in own:
-        along, doppler = clusters.ellipse(index).outline(radius)
+    for index, (along, doppler) in zip(own, outlines, strict=True):
         paint = _paint(index, colour)
         figure.plot(across.reach(along).tolist(), up.reach(doppler).tolist(), marker="·", color=paint)
     # Points last but for the plots: a dot of an outline must not hide one.

@@ -123,10 +123,18 @@ def test_a_picture_of_one_point_and_of_none():
         assert max(map(len, text.split("\n"))) <= 60
 
 
-def test_the_outline_parts_kept_points_from_others(drawn):
-    """The drawn ellipse is that of the radius: a greater one reaches farther."""
-    clusters = cluster(drawn, Recommended(**EXTENTS))
-    texts = [cluster_chart(clusters, 0, radius, 120, 40, colour=False) for radius in (0.5, 2.5)]
-    rows = [[row for row, line in enumerate(text.split("\n")[1:]) if "··" in line] for text in texts]
-    assert rows[1][-1] - rows[1][0] > rows[0][-1] - rows[0][0]
-    assert "ellipses of 2.5 σ" in texts[1]
+def test_ellipses_are_drawn_as_far_as_points_are_kept():
+    # Far points keep both pictures on one scale.
+    r, d = [0.0, 0.0, 8.0, 8.0, 30.0, -30.0], [0.0, 6.0, 0.0, 6.0, 30.0, -30.0]
+    clusters = cluster(Points.of(r, d, np.ones(6)), Recommended(**EXTENTS))
+    drawn = []
+    for radius in (1.0, 2.5):
+        title, *lines = cluster_chart(clusters, 0, radius, 80, 40, colour=False).split("\n")
+        assert f"ellipses of {radius:.3g} σ" in title
+        drawn.append(
+            {(row, at) for row, line in enumerate(lines) for at, cell in enumerate(line) if cell == "·"}
+        )
+    inner, outer = ({row for row, _ in cells} for cells in drawn)
+    assert min(outer) < min(inner) < max(inner) < max(outer)
+    inner, outer = ({at for _, at in cells} for cells in drawn)
+    assert min(outer) < min(inner) < max(inner) < max(outer)
