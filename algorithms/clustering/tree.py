@@ -106,17 +106,19 @@ def steps(
 def _why(ellipse: Ellipse, parameters: Recommended | CorrectedPatent, verdict: Verdict, count: int) -> str:
     """Return what the verdict rests on, in words."""
     if isinstance(parameters, CorrectedPatent):
-        sizes = [("chord", ellipse.chord, parameters.range_extent)]
+        prefix, sizes = "", [("chord", ellipse.chord, parameters.range_extent)]
     else:
         along, across = ellipse.widths
+        prefix = "extent: "
         sizes = [
-            ("range extent", along, parameters.range_extent),
-            ("Doppler extent", across, parameters.doppler_extent),
+            ("range", along, parameters.range_extent),
+            ("Doppler", across, parameters.doppler_extent),
         ]
     if verdict == Verdict.TOO_FEW:
         return f"{count} of at least {parameters.least_points} points"
-    wide = [f"{name} {size:.4g} > {most:g}" for name, size, most in sizes if size > most * SLACK]
-    fitting = ", ".join(f"{name} {size:.4g} ≤ {most:g}" for name, size, most in sizes if size <= most * SLACK)
-    if verdict == Verdict.SPLIT:
-        return ", ".join(wide)
-    return ", ".join([*wide, "no gap to split at"]) if wide else fitting
+    wide = [f"{axis} {size:.4g} > {most:g}" for axis, size, most in sizes if size > most * SLACK]
+    fitting = [f"{axis} {size:.4g} ≤ {most:g}" for axis, size, most in sizes if size <= most * SLACK]
+    reasons = wide or fitting
+    if wide and verdict == Verdict.TARGET:
+        reasons = [*wide, "no gap to split at"]
+    return prefix + ", ".join(reasons)

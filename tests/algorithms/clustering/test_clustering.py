@@ -211,10 +211,10 @@ def test_why_a_set_is_split_or_not():
     assert first.verdict == Verdict.SPLIT
     assert (first.axis, first.cut, first.gap) == ("doppler", 4.0, 86.0)
     along, across = 2.0 * np.sqrt(2.0 * (place.var(axis=0) + 1.0 / 12.0))
-    assert first.why == f"range extent {along:.4g} > 16.31, Doppler extent {across:.4g} > 12.17"
+    assert first.why == f"extent: range {along:.4g} > 16.31, Doppler {across:.4g} > 12.17"
     assert [step.why for step in others[1:]] == [
-        "range extent 1.633 ≤ 16.31, Doppler extent 1.633 ≤ 12.17",
-        "range extent 1.633 ≤ 16.31, Doppler extent 1.633 ≤ 12.17",
+        "extent: range 1.633 ≤ 16.31, Doppler 1.633 ≤ 12.17",
+        "extent: range 1.633 ≤ 16.31, Doppler 1.633 ≤ 12.17",
         "1 of at least 4 points",
     ]
     # Rounding does not make a set too wide, nor say so.
@@ -225,7 +225,7 @@ def test_why_a_set_is_split_or_not():
     coarse = Recommended(range_extent=1.0, doppler_extent=1.0, range_cell=4.0)
     clusters, splits = cluster_with_splits(points_of(np.ones(5), np.ones(5)), coarse)
     (only,) = steps(splits, clusters, coarse, 0)
-    assert only.why == "range extent 3.266 > 1, no gap to split at"
+    assert only.why == "extent: range 3.266 > 1, no gap to split at"
     assert only.verdict == Verdict.TARGET
 
 
