@@ -9,34 +9,39 @@ columns named here must hold a number in every row.
 from __future__ import annotations
 
 import csv
-import difflib
 import io
 import re
-from collections.abc import Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
-from typing import NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.errors import RequestError
 from algorithms.plots import Plots
+from scenarios.csv_tables import (
+    LARGEST_SCAN,
+    SCAN,
+    NumberColumn,
+    Numbers,
+    TableForm,
+    parse_columns,
+    read_records,
+)
 from scenarios.files import read_text
 from scenarios.model import Scenario
 from scenarios.simulate import Draw
 
-NUMERIC = ("scan", "time", "x", "y", "z", "amplitude", "doppler")
-LARGEST_SCAN = 2**31 - 1
+FORM = TableForm(
+    {"scan": SCAN, **dict.fromkeys(("time", "x", "y", "z", "amplitude", "doppler"), NumberColumn())},
+    needed=("x", "y"),
+    either=("scan", "time"),
+    rows="plots",
+)
+"""The columns of a recording."""
+
 LONGEST_INTERVAL = 1e9  # s: any scan number times it is far from overflow
-
-# Rows are converted by the block, since their text takes many times the room of their numbers. Blocks
-# this small die before the garbage collector looks at them, which takes longer than all else.
-BLOCK = 256
-
-Numbers = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +98,7 @@ def parse_plots(
     if interval is not None and not 0.0 < interval <= LONGEST_INTERVAL:
         allowed = f"above 0 and at most {LONGEST_INTERVAL:g} s"
         raise RequestError(f"interval: {interval:g} is given; it must be {allowed}")
-    columns, extra = _columns(text.removeprefix("\ufeff"), source)
+    columns, extra = parse_columns(text, source, FORM)
     assumed: dict[str, str] = {}
     scan = _scans(columns, source, interval, assumed)
     rows = np.argsort(scan, kind="stable").astype(np.int64)
@@ -174,123 +179,6 @@ def _selected(scan: NDArray[np.int64], scans: tuple[int, int], source: str) -> s
     return slice(int(begin), int(end))
 
 
-def _columns(text: str, source: str) -> tuple[dict[str, Numbers], dict[str, tuple[str, ...]]]:
-    """Return the columns of numbers by their lower-case names, and the further ones as text."""
-    _check_delimiter(text, source)
-    records = _records(text, source)
-    names = _names(*next(records, (1, [""])), source)
-    keys = [name.casefold() for name in names]
-    numbers: dict[str, list[Numbers]] = {key: [] for key in keys if key in NUMERIC}
-    extra: dict[str, list[str]] = {name: [] for name in names if name.casefold() not in NUMERIC}
-    width, rows = len(names), 0
-    while block := list(islice(records, BLOCK)):
-        for line, cells in block:
-            if len(cells) != width:
-                hint = "; quote a text with a comma, write numbers with a point" if len(cells) > width else ""
-                given = f"the header has {width} columns, this row {len(cells)}"
-                raise RequestError(f"{source}:{line}: {given}{hint}")
-        for at, column in enumerate(zip(*(cells for _, cells in block), strict=True)):
-            if keys[at] not in numbers:
-                extra[names[at]].extend(column)
-                continue
-            values = _numbers(column, keys[at])
-            if values is None:
-                wrong = next(row for row, cell in enumerate(column) if _numbers([cell], keys[at]) is None)
-                _refuse(source, *block[wrong], at, names[at])
-            numbers[keys[at]].append(values)
-        rows += len(block)
-    if not rows:
-        raise RequestError(f"{source}: the file has a header and no rows of plots below it")
-    texts = {name: tuple(cells) for name, cells in extra.items()}
-    return {key: np.concatenate(parts) for key, parts in numbers.items()}, texts
-
-
-def _check_delimiter(text: str, source: str) -> None:
-    """Refuse an empty file and another delimiter, beside which quotes would be reported instead."""
-    if not text.strip():
-        raise RequestError(f"{source}: the file is empty; it must have a header with x, y and scan or time")
-    line, header = next((line, part) for line, part in enumerate(_lines(text), 1) if part.strip())
-    other = "';'" if ";" in header else "a tab" if "\t" in header else None
-    if other and not {part.strip(' "\t\r\n').casefold() for part in header.split(",")} & set(NUMERIC):
-        raise RequestError(f"{source}:{line}: the delimiter is {other}; it must be a comma")
-
-
-def _names(line: int, header: Sequence[str], source: str) -> list[str]:
-    """Return the names of the columns, spaces stripped."""
-    names = [cell.strip() for cell in header]
-    keys = [name.casefold() for name in names]
-    for at, key in enumerate(keys):
-        if (first := keys.index(key)) < at:
-            both = f"columns {first + 1} and {at + 1} are both called {names[at]!r}"
-            raise RequestError(f"{source}:{line}: {both}; names must differ, in more than case")
-    lacks = {f"no column {name!r}": [name] for name in "xy" if name not in keys}
-    if "scan" not in keys and "time" not in keys:
-        lacks["neither 'scan' nor 'time'"] = ["scan", "time"]
-    if lacks:
-        near = [found for wanted in lacks.values() for name in wanted if (found := _nearest(name, names))]
-        hint = "; rename " + " and ".join(map(repr, dict.fromkeys(near))) + ", if that is it" if near else ""
-        has = ", ".join(map(repr, names[:20])) + (", …" if len(names) > 20 else "")
-        raise RequestError(f"{source}:{line}: there is {' and '.join(lacks)}; the header has {has}{hint}")
-    return names
-
-
-def _nearest(wanted: str, names: Sequence[str]) -> str | None:
-    """Return the name most like a wanted one: one that has it as a word (`x_km`), or is spelt alike."""
-    keys = {name.casefold(): name for name in names}
-    alike = [key for key in keys if wanted in re.findall(r"[a-z]+", key)]
-    return next((keys[key] for key in alike or difflib.get_close_matches(wanted, keys, 1)), None)
-
-
-def _lines(text: str) -> io.TextIOWrapper:
-    """Return the lines of a text, their ends kept."""
-    # A quarter of the room of StringIO; splitlines would split inside fields, as at U+2028.
-    data = io.BytesIO(text.encode("utf-8", "surrogatepass"))
-    return io.TextIOWrapper(data, "utf-8", "surrogatepass", newline="")
-
-
-def _records(text: str, source: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield the header and each row that is not blank, with the line on which it begins."""
-    reader = csv.reader(_lines(text), strict=True)
-    line = 1
-    try:
-        for cells in reader:
-            if len(cells) > 1 or (cells and cells[0].strip()):
-                yield line, cells
-            line = reader.line_num + 1
-    except csv.Error as error:
-        raise RequestError(
-            f"{source}:{line}: the row that begins here cannot be read ({error}); a field that opens with a "
-            "quote must end with one, and a quote inside it must be doubled"
-        ) from None
-
-
-def _numbers(cells: Sequence[str], key: str) -> Numbers | None:
-    """Return cells as numbers, or None where one is not a number that the column allows."""
-    try:
-        values = np.fromiter(map(float, cells), np.float64, len(cells))
-    except ValueError:
-        return None
-    good = np.isfinite(values)
-    if key == "scan":
-        good &= (values >= 0.0) & (values <= LARGEST_SCAN) & (values == np.floor(values))
-    # To Python 1_2 is 12; in a file it is more likely a number of two parts.
-    return values if good.all() and "_" not in "".join(cells) else None
-
-
-def _refuse(source: str, line: int, cells: Sequence[str], column: int, name: str) -> NoReturn:
-    """Say what is wrong with one field of the row that begins on a line."""
-    line += sum(len(re.findall(r"\r\n?|\n", cell)) for cell in cells[:column])
-    cell = cells[column].strip()
-    given = f"{cell if len(cell) <= 40 else cell[:39] + '…'!r} is given" if cell else "nothing is given"
-    allowed = "a number" + (" with a decimal point" if "," in cell else "")
-    if name.casefold() == "scan":
-        allowed = f"a whole number from 0 to {LARGEST_SCAN}"
-    else:
-        with suppress(ValueError):
-            allowed = allowed if np.isfinite(float(cell)) else "a finite number"
-    raise RequestError(f"{source}:{line}: column {name!r}: {given}; it must be {allowed}")
-
-
 def write_plots(draw: Draw, scenario: Scenario) -> str:
     """Return the plots of one simulated trial, with their truth, as CSV that reads back bit for bit.
 
@@ -336,7 +224,7 @@ def write_assigned(text: str, recording: Recording, tracks: Sequence[NDArray[np.
     for number, plots in enumerate(tracks):
         for row in recording.rows[plots].tolist():
             assigned.setdefault(row, []).append(str(number))
-    records = _records(text.removeprefix("\ufeff"), "the recording")
+    records = read_records(text.removeprefix("\ufeff"), "the recording")
     names = next(records)[1]
     taken = [name.strip().casefold() for name in names]
     if "track" in taken:

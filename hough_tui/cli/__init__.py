@@ -12,6 +12,7 @@ from typing import Annotated
 import typer
 
 from hough_tui.cli.advise import advise
+from hough_tui.cli.cluster import cluster
 from hough_tui.cli.listings import initiators, schema, sets, validate
 from hough_tui.cli.plots import initiate, simulate
 from hough_tui.cli.process import refuse, reported
@@ -71,7 +72,7 @@ def open_application(
 
 
 # As `--help` lists them.
-for command in (batch, initiate, simulate, advise, reproduce, sets, initiators, validate, schema):
+for command in (batch, initiate, simulate, advise, cluster, reproduce, sets, initiators, validate, schema):
     app.command()(command)
 app.command("open", hidden=True)(open_application)
 app.add_typer(results_app, name="results")

@@ -1,4 +1,4 @@
-"""Text charts: rates against what was swept, and plots and tracks in the plane."""
+"""Text charts: rates against what was swept, plots and tracks in the plane, clusters of points."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 # A figure of its own for each chart: the one that plotext's functions share is global state.
 from plotext._figure import _figure_class  # type: ignore[import-untyped]
 
+from algorithms.clustering.clusters import Clusters
 from hough_tui.reports.dots import Axis, dotted, span, ticks
 from hough_tui.reports.series import Series, rate_series
 
@@ -27,6 +28,9 @@ AGES = (245, 109, 73, 37)
 """Colours of old to new plots."""
 
 ESCAPES = re.compile(r"\x1b\[[0-9;]*m")
+INTERFERENCE = 245
+"""Colour of points that are in no cluster."""
+
 MOST_LABELS = 40
 SMALLEST = 9
 """Lines that a chart of rates needs beside its legend."""
@@ -166,6 +170,60 @@ def plane_chart(
         title += f" ({len(x) - np.count_nonzero(inside):,} outside)"
     title += f" · {_count(len(tracks), 'track')}" if tracks else ""
     return f"{title}\n{_drawn(figure, colour)}"
+
+
+def cluster_chart(clusters: Clusters, scan: int, radius: float, width: int, height: int, colour: bool) -> str:
+    """Return a picture of the points, ellipses and plots of one scan, Doppler upwards.
+
+    Parameters
+    ----------
+    clusters : of any number of scans
+    scan : index of the one that is drawn
+    radius : of the ellipses, in standard deviations
+    width, height : of the whole picture, in cells
+    colour : whether to colour each cluster; its number stands at its plot in any case
+    """
+    points = clusters.points.scan(scan)
+    rows = slice(clusters.points.offsets[scan], clusters.points.offsets[scan + 1])
+    label = np.where(clusters.kept[rows], clusters.label[rows], -1)
+    own = np.flatnonzero(clusters.scan == scan).tolist()
+    outlines = [clusters.ellipse(index).outline(radius) for index in own]
+    across_span = span(np.concatenate([points.range, *(along for along, _ in outlines)]), 0.05)
+    up_span = span(np.concatenate([points.doppler, *(doppler for _, doppler in outlines)]), 0.05)
+    marks = [ticks(*across_span, max(2, width // 12)), ticks(*up_span, max(2, height // 4))]
+    names = [[f"{mark:.10g}" for mark in on_axis] for on_axis in marks]
+    across = Axis(*across_span, max(2, width - 2 - max(map(len, names[1]), default=0)))
+    up = Axis(*up_span, max(2, height - 5))
+    figure = _figure(width, height - 1, across, up)
+    figure.xticks(marks[0], names[0])
+    figure.yticks(marks[1], names[1])
+    figure.xlabel("range")
+    for index, (along, doppler) in zip(own, outlines, strict=True):
+        paint = _paint(index, colour)
+        figure.plot(across.reach(along).tolist(), up.reach(doppler).tolist(), marker="·", color=paint)
+    # Points last but for the plots: a dot of an outline must not hide one.
+    cells = dotted(points.range, points.doppler, label + 1, across, up)
+    if cells.glyphs:
+        paints = [_paint(int(newest) - 1, colour) for newest in cells.newest] if colour else "default"
+        figure.scatter(cells.x.tolist(), cells.y.tolist(), marker=cells.glyphs, color=paints)
+    for number, index in enumerate(own):
+        place = clusters.range[index : index + 1], clusters.doppler[index : index + 1]
+        x, y = across.snapped(place[0]).tolist(), up.snapped(place[1]).tolist()
+        figure.scatter(x, y, marker="✚", color=_paint(index, colour))
+        if number < MOST_LABELS:
+            beside = across.snapped(place[0], 1).tolist()[0]
+            figure.text(str(index), beside, y[0], color=_paint(index, colour), style="bold", alignment="left")
+    title = f"Doppler · {_count(len(points), 'point')} · {_count(len(own), 'cluster')}"
+    loose = int(np.count_nonzero(label < 0))
+    title += f" · {loose:,} left out" if loose else ""
+    title += f" · ellipses of {radius:.3g} σ" if own else ""
+    return f"{title}\n{_drawn(figure, colour)}"
+
+
+def _paint(index: int, colour: bool) -> Any:
+    if not colour:
+        return "default"
+    return INTERFERENCE if index < 0 else COLOURS[index % len(COLOURS)]
 
 
 def _figure(width: int, height: int, across: Axis, up: Axis) -> Any:

@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from algorithms.errors import RequestError
 from algorithms.plots import PlotChunk
+from scenarios.csv_tables import BLOCK
 from scenarios.model import Scenario
-from scenarios.recordings import BLOCK, Recording, parse_plots, read_plots, write_assigned, write_plots
+from scenarios.recordings import Recording, parse_plots, read_plots, write_assigned, write_plots
 from scenarios.simulate import Draw, draw
 from scenarios.world import World
 

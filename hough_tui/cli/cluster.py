@@ -1,0 +1,98 @@
+"""The command that gathers points of a high-resolution radar into plots."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from hough_tui.cli.options import JsonOption, SetOption
+from hough_tui.cli.output import is_coloured, output_width, print_renderables
+from hough_tui.cli.process import announce_compilation, refuse, reported, tell
+
+
+class Result(StrEnum):
+    """Which plot a cluster gives."""
+
+    MEAN = "mean"
+    STRONGEST = "strongest"
+
+
+@reported
+def cluster(
+    points: Annotated[Path, typer.Argument(metavar="POINTS", help="A CSV file: range, doppler, amplitude.")],
+    mode: Annotated[
+        str, typer.Option(metavar="MODE", help="recommended, corrected-patent, dbscan or k-means.")
+    ] = "recommended",
+    range_extent: Annotated[
+        float | None, typer.Option(metavar="D_r", help="Greatest extent of a target in range.")
+    ] = None,
+    doppler_extent: Annotated[
+        float | None, typer.Option(metavar="D_d", help="Greatest extent of a target in Doppler.")
+    ] = None,
+    result: Annotated[
+        Result | None, typer.Option(help="The plot of a cluster; by default the mean, by amplitude.")
+    ] = None,
+    assignments: SetOption = None,
+    scan: Annotated[int | None, typer.Option(min=0, help="Use the points of this scan only.")] = None,
+    as_json: JsonOption = False,
+    csv: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write the plots as CSV; - prints them instead.")
+    ] = None,
+    plot: Annotated[bool, typer.Option("--plot", help="Draw a scan's points, ellipses and plots.")] = False,
+    with_steps: Annotated[bool, typer.Option("--steps", help="Tell the splits of a scan, too.")] = False,
+) -> None:
+    """Gather the points of a high-resolution radar into one plot a target."""
+    printed = csv == "-"
+    refuse(as_json and plot, "--json prints one document and nothing else: leave out --plot")
+    refuse(as_json and printed, "--json and --csv - both print to standard output: leave one of them out")
+    refuse(printed and (plot or with_steps), "--csv - prints nothing but CSV: leave out --plot and --steps")
+    from hough_tui.experiments.clustering import (
+        can_be_followed,
+        cluster_recording,
+        document,
+        given_clustering,
+        plot_rows,
+    )
+    from hough_tui.reports.clusters import cluster_table, step_table
+    from hough_tui.reports.documents import csv_text, json_text
+    from scenarios.atomic import replace_file
+    from scenarios.files import read_text
+    from scenarios.point_files import parse_points
+
+    parameters, notes = given_clustering(
+        mode, range_extent, doppler_extent, result and result.value, assignments or ()
+    )
+    refuse(with_steps and not can_be_followed(parameters), f"--steps: mode {mode} splits nothing")
+    recording = parse_points(read_text(points), str(points), scan)
+    announce_compilation()
+    found = cluster_recording(recording, parameters)
+    for note in notes:
+        tell(note)
+    told = document(found, with_steps)
+    if csv is not None:
+        text = csv_text(plot_rows(told))
+        if printed:
+            sys.stdout.write(text)
+            return
+        replace_file(Path(csv), text)
+    if as_json:
+        sys.stdout.write(json_text(told))
+        return
+    print_renderables(cluster_table(told, output_width()))
+    if (plot or with_steps) and len(recording.scans) > 1:
+        tell(f"scan {recording.scans[0]} is shown, the first of {len(recording.scans):,}; see --scan")
+    if with_steps:
+        print_renderables(step_table(told, int(recording.scans[0]), output_width()))
+    if plot:
+        print_plane(found)
+
+
+def print_plane(found: Any) -> None:
+    """Print a chart of the points of the first scan, and of its clusters."""
+    from hough_tui.reports.charts import cluster_chart
+
+    print(cluster_chart(found.clusters, 0, found.radius, min(output_width(), 120), 36, is_coloured()))

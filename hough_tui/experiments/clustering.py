@@ -1,0 +1,210 @@
+"""Clustering of recorded points: parameters, clusters, and the document that tells them."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.clustering.clusters import NONE, Clusters
+from algorithms.clustering.comparisons import TooFewPoints
+from algorithms.clustering.ellipse import Ellipse
+from algorithms.clustering.modes import cluster, cluster_with_splits
+from algorithms.clustering.parameters import MODES, Clustering, SplittingClustering
+from algorithms.clustering.points import Points
+from algorithms.clustering.splitting import Splits
+from algorithms.clustering.tree import Step, steps
+from algorithms.errors import RequestError
+from algorithms.parameters import unknown, validated
+from hough_tui.experiments.initiation import assign
+from scenarios.point_files import PointRecording
+
+OPTIONS = {
+    "range_extent": "--range-extent",
+    "doppler_extent": "--doppler-extent",
+    "number": "--set number=N",
+}
+"""How parameters without a default are given."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clustered:
+    """The clusters of one recording, with all that led to them.
+
+    Attributes
+    ----------
+    parameters : by which it was clustered
+    recording, clusters : points in, clusters out
+    splits : the splits that led to them; None where none did
+    seconds : of the clustering alone
+    """
+
+    parameters: Clustering
+    recording: PointRecording
+    clusters: Clusters
+    splits: Splits | None
+    seconds: float
+
+    @property
+    def radius(self) -> float:
+        """How far from its centre a cluster reaches, in standard deviations; √2 where the mode has none."""
+        is_bounded = isinstance(self.parameters, SplittingClustering)
+        return cast("SplittingClustering", self.parameters).radius if is_bounded else math.sqrt(2.0)
+
+    def steps(self, scan: int) -> list[Step]:
+        """Return the steps of one scan; none of a mode that does not split."""
+        if self.splits is None:
+            return []
+        return steps(self.splits, self.clusters, cast("Any", self.parameters), scan)
+
+
+def given_clustering(
+    mode: str,
+    range_extent: float | None,
+    doppler_extent: float | None,
+    result: str | None,
+    assignments: Sequence[str] = (),
+) -> tuple[Clustering, list[str]]:
+    """Return the parameters of a mode, and in words what of the given is not used.
+
+    Parameters
+    ----------
+    mode, range_extent, doppler_extent, result : as declared; None where nothing is given
+    assignments : `key=value` of any parameter of the mode; they go before the others
+
+    Raises
+    ------
+    RequestError
+        Where the mode is unknown, or a parameter is missing or not allowed.
+    """
+    if mode not in MODES:
+        raise RequestError(f"--mode: {unknown(mode, list(MODES), 'mode')}")
+    model, notes = MODES[mode], []
+    data: dict[str, Any] = {"mode": mode, "range_extent": range_extent, "result": result}
+    if "doppler_extent" in model.model_fields:
+        data["doppler_extent"] = doppler_extent
+    elif doppler_extent is not None:
+        notes.append(f"mode {mode} looks at the extent in range alone: --doppler-extent is not used")
+    data = {name: value for name, value in data.items() if value is not None}
+    for assignment in assignments:
+        assign(data, assignment)
+    if data["mode"] != mode:
+        raise RequestError("--set mode: give --mode instead, on which the parameters depend")
+    for name, option in OPTIONS.items():
+        if name in model.model_fields and name not in data:
+            raise RequestError(f"mode {mode} needs {option}: {model.model_fields[name].description}")
+    return validated(model, data, f"mode {mode}"), notes
+
+
+def cluster_recording(recording: PointRecording, parameters: Clustering) -> Clustered:
+    """Return the clusters of recorded points.
+
+    Raises
+    ------
+    RequestError
+        As `cluster` does.
+    """
+    # Compiled code is loaded here, so that the time given below is that of the clustering.
+    nothing = np.zeros(0)
+    cluster(Points.of(nothing, nothing, nothing), parameters)
+    began = time.perf_counter()
+    try:
+        clusters, splits = cluster_with_splits(recording.points, parameters)
+    except TooFewPoints as error:
+        # By the scan's number in the file.
+        raise TooFewPoints(error.number, error.different, int(recording.scans[error.scan])) from None
+    return Clustered(parameters, recording, clusters, splits, time.perf_counter() - began)
+
+
+def document(found: Clustered, with_steps: bool = False) -> dict[str, Any]:
+    """Return a clustering as `cluster --json` prints it."""
+    clusters, recording = found.clusters, found.recording
+    rows = recording.rows
+    told: dict[str, Any] = {
+        "mode": found.parameters.mode,
+        "parameters": found.parameters.model_dump(mode="json"),
+        "points": len(clusters.points),
+        "scans": clusters.points.scans,
+        "seconds": found.seconds,
+        "clusters": [
+            {
+                "scan": int(recording.scans[clusters.scan[index]]),
+                "members": _rising(rows[members]),
+                "kept": _rising(rows[members[clusters.kept[members]]]),
+                "range": float(clusters.range[index]),
+                "doppler": float(clusters.doppler[index]),
+                "amplitude": float(clusters.amplitude[index]),
+                "strongest": int(rows[clusters.strongest[index]]),
+                "ellipse": _ellipse(clusters.ellipse(index)),
+            }
+            for index, members in enumerate(clusters.members())
+        ],
+        "interference": _rising(rows[(clusters.label == NONE) | ~clusters.kept]),
+    }
+    if with_steps:
+        told["steps"] = [
+            _step(step, index, int(number), rows)
+            for scan, number in enumerate(recording.scans)
+            for index, step in enumerate(found.steps(scan))
+        ]
+    return told
+
+
+def plot_rows(told: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the plots of a document as rows of a table."""
+    return [
+        {
+            "scan": found["scan"],
+            "range": found["range"],
+            "doppler": found["doppler"],
+            "amplitude": found["amplitude"],
+            "members": len(found["members"]),
+            "kept": len(found["kept"]),
+        }
+        for found in told["clusters"]
+    ]
+
+
+def can_be_followed(parameters: Clustering) -> bool:
+    """Return whether a mode splits, so that its steps can be told."""
+    return isinstance(parameters, SplittingClustering)
+
+
+def _step(step: Step, index: int, scan: int, rows: NDArray[np.int64]) -> dict[str, Any]:
+    return {
+        "scan": scan,
+        "step": index,
+        "parent": step.parent,
+        "parts": list(step.parts),
+        "depth": step.depth,
+        "points": _rising(rows[step.points]),
+        "verdict": step.verdict.value,
+        "why": step.why,
+        "axis": step.axis,
+        "cut": step.cut,
+        "gap": step.gap,
+        "cluster": step.cluster,
+        "ellipse": _ellipse(step.ellipse),
+    }
+
+
+def _ellipse(ellipse: Ellipse) -> dict[str, Any]:
+    a, b, c = ellipse.range_variance, ellipse.doppler_variance, ellipse.covariance
+    return {
+        "centre": list(ellipse.centre),
+        "coefficients": list(ellipse.coefficients),
+        "chord": ellipse.chord,
+        "widths": list(ellipse.widths),
+        "semi_axes": list(ellipse.semi_axes),
+        "angle_deg": math.degrees(ellipse.angle),
+        "covariance": [[a, c], [c, b]],
+    }
+
+
+def _rising(rows: NDArray[np.int64]) -> list[int]:
+    return sorted(rows.tolist())

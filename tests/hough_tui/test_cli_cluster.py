@@ -1,0 +1,242 @@
+"""`hough-tui cluster`: the document, the tables, the CSV, the tree and the picture of recorded points."""
+
+import csv
+import io
+import json
+import sys
+
+import numpy as np
+import pytest
+
+from hough_tui.cli import main
+from scenarios.range_doppler import SCENES, draw_scene
+
+EXTENTS = ("--range-extent", 16, "--doppler-extent", 12)
+SQUARE = ((0, 0), (0, 2), (2, 0), (2, 2))
+
+
+@pytest.fixture
+def cli(data_home, tmp_path, monkeypatch, capsys):
+    """Run a command; return its exit status, what it printed and what it said."""
+    monkeypatch.setenv("COLUMNS", "110")
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["hough-tui", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        out, err = capsys.readouterr()
+        said = [line for line in err.splitlines() if not line.startswith("hough-tui: compiling")]
+        return ended.value.code or 0, out, "\n".join(said)
+
+    return run
+
+
+@pytest.fixture
+def clustered(cli, points):
+    """Run `cluster --json`; return the document."""
+
+    def run(*arguments: object) -> dict:
+        status, out, err = cli("cluster", points, *EXTENTS, *arguments, "--json")
+        assert status == 0, err
+        return json.loads(out)
+
+    return run
+
+
+@pytest.fixture
+def points(tmp_path):
+    """Two scans in turn, each of two squares of four points 40 cells apart, and of a stray point."""
+    rows = ["scan,range,doppler,amplitude"]
+    for at, level in ((10, 1.0), (50, 3.0)):
+        for r, d in SQUARE:
+            rows += [f"{scan},{at + scan + r},{at + d},{level}" for scan in (7, 3)]
+    rows += [f"{scan},90,-60,9" for scan in (7, 3)]
+    path = tmp_path / "points.csv"
+    path.write_text("\n".join(rows) + "\n")
+    return path
+
+
+def test_members_are_rows_of_the_file(clustered):
+    told = clustered()
+    assert (told["points"], told["scans"], told["mode"]) == (18, 2, "recommended")
+    found = [(cluster["scan"], cluster["members"]) for cluster in told["clusters"]]
+    assert found == [(3, [1, 3, 5, 7]), (3, [9, 11, 13, 15]), (7, [0, 2, 4, 6]), (7, [8, 10, 12, 14])]
+    assert all(cluster["kept"] == cluster["members"] for cluster in told["clusters"])
+    assert told["interference"] == [16, 17]
+    first = told["clusters"][0]
+    assert (first["range"], first["doppler"], first["amplitude"]) == (14.0, 11.0, 1.0)
+    # A square of two cells: a variance of 1, and a twelfth for the cell.
+    variance = 1.0 + 1.0 / 12.0
+    ellipse = first["ellipse"]
+    assert ellipse["centre"] == [14.0, 11.0]
+    assert ellipse["coefficients"] == pytest.approx([2 * variance, 0.0, 2 * variance, -4 * variance**2])
+    assert ellipse["chord"] == pytest.approx(np.sqrt(8.0 * variance))
+    assert ellipse["widths"] == pytest.approx([np.sqrt(8.0 * variance)] * 2)
+    assert told["parameters"]["radius"] == 2.5
+
+
+def test_the_contract_of_the_document(clustered):
+    for cluster in clustered()["clusters"]:
+        assert {"scan", "members", "kept", "range", "doppler", "amplitude", "ellipse"} <= set(cluster)
+        assert {"centre", "coefficients", "chord"} <= set(cluster["ellipse"])
+
+
+def test_options_reach_the_clustering(clustered):
+    strongest = clustered("--result", "strongest")
+    assert [cluster["strongest"] for cluster in strongest["clusters"]] == [1, 9, 0, 8]
+    assert [cluster["range"] for cluster in strongest["clusters"]] == [13.0, 53.0, 17.0, 57.0]
+    assert len(clustered("--set", "least_points=1")["clusters"]) == 6
+    assert len(clustered("--set", "least_points=5")["clusters"]) == 0
+    assert len(clustered("--set", "range_extent=200", "--set", "doppler_extent=200")["clusters"]) == 2
+    alone = clustered("--scan", 7)
+    assert [cluster["members"] for cluster in alone["clusters"]] == [[0, 2, 4, 6], [8, 10, 12, 14]]
+    assert alone["interference"] == [16]
+    patent = clustered("--mode", "corrected-patent")
+    # The stray point makes the ellipse of a square steep and its chord short, so it is not split off.
+    assert [len(cluster["members"]) for cluster in patent["clusters"]] == [4, 5] * 2
+
+
+@pytest.mark.parametrize("mode", ["dbscan", "k-means"])
+def test_comparisons(clustered, mode):
+    pytest.importorskip("sklearn")
+    more = ("--set", "number=3") if mode == "k-means" else ()
+    found = [cluster["members"] for cluster in clustered("--mode", mode, *more)["clusters"]]
+    targets = [[1, 3, 5, 7], [9, 11, 13, 15], [0, 2, 4, 6], [8, 10, 12, 14]]
+    # k-means, which must put the stray point somewhere, makes it a target.
+    assert sorted(found) == sorted(targets + ([[16], [17]] if mode == "k-means" else []))
+
+
+def test_steps_are_a_tree(clustered):
+    told = clustered("--steps")
+    steps = [step for step in told["steps"] if step["scan"] == 3]
+    assert [step["step"] for step in steps] == list(range(5))
+    assert sorted(steps[0]["points"]) == list(range(1, 18, 2))
+    assert (steps[0]["axis"], steps[0]["gap"]) == ("doppler", 70.0)
+    for step in steps:
+        if step["parts"]:
+            parts = [steps[part] for part in step["parts"]]
+            assert all(part["parent"] == step["step"] for part in parts)
+            assert sorted(part_row for part in parts for part_row in part["points"]) == step["points"]
+    ended = {step["cluster"]: step["points"] for step in steps if step["verdict"] == "target"}
+    assert ended == {index: told["clusters"][index]["members"] for index in (0, 1)}
+    assert "steps" not in clustered()
+
+
+def test_csv_holds_what_the_document_holds(cli, clustered, points, tmp_path):
+    status, out, _ = cli("cluster", points, *EXTENTS, "--csv", "-")
+    assert status == 0
+    rows = list(csv.DictReader(io.StringIO(out)))
+    told = clustered()["clusters"]
+    for row, cluster in zip(rows, told, strict=True):
+        assert {key: float(row[key]) for key in ("scan", "range", "doppler", "amplitude")} == {
+            key: cluster[key] for key in ("scan", "range", "doppler", "amplitude")
+        }
+        assert (int(row["members"]), int(row["kept"])) == (len(cluster["members"]), len(cluster["kept"]))
+    status, printed, _ = cli("cluster", points, *EXTENTS, "--csv", "plots.csv", "--json")
+    assert status == 0
+    assert (tmp_path / "plots.csv").read_text() == out
+    assert json.loads(printed)["clusters"] == told
+
+
+def test_plots_can_be_clustered_again(cli, points, tmp_path):
+    """The CSV of plots is itself a file of points."""
+    assert cli("cluster", points, *EXTENTS, "--csv", "plots.csv")[0] == 0
+    status, out, _ = cli("cluster", "plots.csv", *EXTENTS, "--set", "least_points=1", "--json")
+    assert status == 0
+    assert [cluster["members"] for cluster in json.loads(out)["clusters"]] == [[0], [1], [2], [3]]
+
+
+def test_tables_and_picture(cli, points):
+    status, out, err = cli("cluster", points, *EXTENTS, "--steps", "--plot")
+    assert status == 0
+    assert err == "hough-tui: scan 3 is shown, the first of 2; see --scan"
+    assert "recommended · 4 clusters" in out
+    assert "18 points, 2 scans, 2 of the points in no plot" in out
+    assert "splits of scan 3" in out
+    assert "split in Doppler at -60, gap 70.0" in out
+    assert "1 of at least 4 points" in out
+    assert "Doppler · 9 points · 2 clusters · 1 left out · ellipses of 2.5 σ" in out
+    assert out.count("✚") == 2
+    assert "\x1b" not in out
+    assert max(map(len, out.splitlines())) <= 110
+
+
+def test_a_scan_is_shown_alone(cli, points):
+    status, out, err = cli("cluster", points, *EXTENTS, "--steps", "--scan", 7)
+    assert (status, err) == (0, "")
+    assert "splits of scan 7" in out
+    assert "9 points, 1 scan" in out
+
+
+def test_many_scans_are_clustered_as_each_alone(cli, tmp_path):
+    drawn = draw_scene(SCENES["close"], 3, 0, 5).points
+    scan = np.repeat(np.arange(5), np.diff(drawn.offsets))
+    rows = np.stack([scan, drawn.range, drawn.doppler, drawn.amplitude], axis=1)
+    order = np.random.default_rng(1).permutation(len(rows))
+    header = "scan,range,doppler,amplitude"
+    np.savetxt(tmp_path / "all.csv", rows[order], delimiter=",", header=header, comments="")
+    status, out, _ = cli("cluster", "all.csv", *EXTENTS, "--json")
+    assert status == 0
+    told = json.loads(out)["clusters"]
+    assert [cluster["scan"] for cluster in told] == [0, 0, 1, 1, 2, 2, 3, 3, 4, 4]
+    status, out, _ = cli("cluster", "all.csv", *EXTENTS, "--scan", 2, "--json")
+    assert status == 0
+    assert json.loads(out)["clusters"] == told[4:6]
+
+
+def test_an_option_without_effect_is_told(cli, points):
+    status, _, err = cli("cluster", points, *EXTENTS, "--mode", "corrected-patent")
+    assert status == 0
+    assert err == (
+        "hough-tui: mode corrected-patent looks at the extent in range alone: --doppler-extent is not used"
+    )
+
+
+K_MEANS = ("--mode", "k-means", "--set")
+REFUSED = [
+    ((), "mode recommended needs --range-extent: the greatest extent D_r"),
+    (("--range-extent", 16), "mode recommended needs --doppler-extent: the greatest extent D_d"),
+    (("--range-extent", 0, "--doppler-extent", 12), "range_extent: 0.0 is given; it must be greater than 0"),
+    (("--range-extent", 16, "--doppler-extent", -1), "doppler_extent: -1.0 is given; it must be greater"),
+    (("--range-extent", "nan", "--doppler-extent", 1), "range_extent: nan is given; it must be a finite"),
+    ((*EXTENTS, "--mode", "patent"), "--mode: there is no mode 'patent'"),
+    ((*EXTENTS, "--set", "radios=2"), "there is no field 'radios'; did you mean 'radius'?"),
+    ((*EXTENTS, "--set", "radius=0"), "mode recommended: radius: 0 is given; it must be greater than 0"),
+    ((*EXTENTS, "--set", "mode=dbscan"), "--set mode: give --mode instead"),
+    ((*EXTENTS, "--mode", "k-means"), "mode k-means needs --set number=N: the number of targets"),
+    ((*EXTENTS, *K_MEANS, "number=10"), "scan 3: k-means is to find 10 targets among 9 different points"),
+    ((*EXTENTS, "--scan", 5), "points.csv: scan 5 is asked for, which holds no points"),
+    ((*EXTENTS, "--mode", "dbscan", "--steps"), "--steps: mode dbscan splits nothing"),
+    ((*EXTENTS, "--json", "--plot"), "--json prints one document and nothing else"),
+    ((*EXTENTS, "--json", "--csv", "-"), "--json and --csv - both print to standard output"),
+    ((*EXTENTS, "--csv", "-", "--plot"), "--csv - prints nothing but CSV"),
+]
+
+
+@pytest.mark.parametrize(("options", "told"), REFUSED)
+def test_a_wrong_request_is_refused(cli, points, options, told):
+    if "k-means" in options:
+        pytest.importorskip("sklearn")
+    status, out, err = cli("cluster", points, *options)
+    assert (status, out) == (2, "")
+    assert told in err
+    assert err.startswith("hough-tui: ")
+    assert err.count("\n") == 0
+
+
+def test_a_file_that_cannot_be_written_ends_with_1(cli, points):
+    status, out, err = cli("cluster", points, *EXTENTS, "--csv", "none/plots.csv")
+    assert (status, out, err) == (1, "", "hough-tui: none/plots.csv: No such file or directory")
+
+
+def test_a_wrong_file_is_refused_with_its_place(cli, tmp_path):
+    (tmp_path / "bad.csv").write_text("range,doppler,amplitude\n1,2,3\n4,nan,6\n")
+    status, out, err = cli("cluster", "bad.csv", *EXTENTS)
+    assert (status, out) == (2, "")
+    assert err == (
+        "hough-tui: bad.csv:3: column 'doppler': 'nan' is given; it must be a number from -1e+15 to 1e+15"
+    )
+    status, out, err = cli("cluster", "none.csv", *EXTENTS)
+    assert (status, out) == (2, "")
+    assert err == "hough-tui: none.csv: there is no such file"
