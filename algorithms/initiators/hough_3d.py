@@ -32,6 +32,9 @@ Array = NDArray[np.float64]
 CELLS_ACROSS = 64
 """Default number of cells across the greatest extent of the plots, as the source's program takes it."""
 
+NOISE_IN_CELL = 3.0
+"""The least width of a default cell in standard deviations: with few plots their extent is no measure."""
+
 
 class Hough3DParameters(MotionParameters):
     """The parameters of `hough-3d`."""
@@ -45,7 +48,8 @@ class Hough3DParameters(MotionParameters):
         "auto",
         dimension=Dimension.LENGTH,
         help="width of a cell across a direction",
-        auto="a 64th of the greatest extent of the plots of a batch",
+        auto="a 64th of the greatest extent of the plots of a batch, at least 3 standard deviations of the "
+        "noisiest",
     )
     lines: Count = parameter(
         20, dimension=Dimension.COUNT, help="how many lines are taken at most from one batch"
@@ -185,7 +189,7 @@ def _near_line(position, left, centre, direction, reach, rows):  # type: ignore[
 
 
 @kernel
-def _lines(position, around, cell, most, least, usable):  # type: ignore[no-untyped-def]
+def _lines(position, covariance, around, cell, most, least, usable):  # type: ignore[no-untyped-def]
     """Set which plots lie on one of the lines that are taken, the one with the most votes first."""
     count = len(position)
     lower, upper = np.full(3, np.inf), np.full(3, -np.inf)
@@ -201,7 +205,10 @@ def _lines(position, around, cell, most, least, usable):  # type: ignore[no-unty
         usable[:] = True
         return
     if cell <= 0.0:
-        cell = extent / CELLS_ACROSS
+        noise = 0.0
+        for plot in range(count):
+            noise = max(noise, covariance[plot, 0, 0] + covariance[plot, 1, 1] + covariance[plot, 2, 2])
+        cell = max(extent / CELLS_ACROSS, NOISE_IN_CELL * math.sqrt(noise))
     # No plot is farther from the middle than half the diagonal of its box.
     half = int(0.5 * math.sqrt(3.0) * extent / cell) + 2
     left = np.arange(count)
@@ -262,7 +269,7 @@ def _lines_and_time(  # type: ignore[no-untyped-def]
         place, when, of_scan = position[begin:end], time[begin:end], scan[begin:end]
         usable = np.zeros(len(place), np.bool_)
         if len(place) >= least:
-            _lines(place, around, cell, most, least, usable)
+            _lines(place, covariance[begin:end], around, cell, most, least, usable)
         pairs, every = pairs_within_reach(
             place, when, of_scan, covariance[begin:end], slowest, fastest, allowance, STEPS
         )
