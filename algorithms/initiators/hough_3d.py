@@ -124,7 +124,8 @@ def _fullest_of(position, middle, left, around, direction, cell, half, keys, pla
         for axis in range(3):
             place[axis] = position[left[k], axis] - middle[axis]
         first, second = across(around[direction], place)
-        row, column = np.int64(math.floor(first / cell)), np.int64(math.floor(second / cell))
+        # The middle of the plots is the middle of a cell: a line through it shall not lie at an edge.
+        row, column = np.int64(math.floor(first / cell + 0.5)), np.int64(math.floor(second / cell + 0.5))
         keys[k] = (row + half) * width + column + half
     cells = keys[: len(left)]
     cells.sort()
@@ -229,7 +230,7 @@ def _lines(position, covariance, around, cell, most, least, usable):  # type: ig
                 place[axis] = position[plot, axis] - middle[axis]
             first, second = across(around[chosen], place)
             # The cell and half of its neighbours: the line may lie at its edge.
-            if row - 0.5 <= first / cell < row + 1.5 and column - 0.5 <= second / cell < column + 1.5:
+            if abs(first / cell - row) < 1.0 and abs(second / cell - column) < 1.0:
                 rows[found] = plot
                 found += 1
         _line_through(position, rows, found, centre, direction)
