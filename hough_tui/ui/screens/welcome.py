@@ -10,7 +10,7 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.screen import ModalScreen
-from textual.widgets import OptionList, Static
+from textual.widgets import Button, OptionList, Static
 from textual.widgets.option_list import Option
 
 from hough_tui.ui.screens.path_prompt import PathPrompt
@@ -25,7 +25,8 @@ class Welcome(ModalScreen[Any]):
         background: $surface; border: round $primary; }
     Welcome .title { text-style: bold; }
     Welcome .text { color: $text-muted; margin-bottom: 1; }
-    Welcome OptionList { height: auto; max-height: 16; border: none; background: $surface; }
+    Welcome OptionList { height: auto; max-height: 60vh; border: none; background: $surface; }
+    Welcome Button { margin: 1 0 0 1; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape", "leave", "Back", id="welcome.leave"),
@@ -50,6 +51,8 @@ class Welcome(ModalScreen[Any]):
                 markup=False,
             )
             yield OptionList(*self._options())
+            # Beside the list, which may be longer than the screen is high.
+            yield Button("Open a file …  (o)", compact=True)
 
     def _options(self) -> list[Option | None]:
         options: list[Option | None] = []
@@ -61,20 +64,17 @@ class Welcome(ModalScreen[Any]):
         for found in self._bundled:
             text = Text.assemble((found.name, "bold"), "\n  ", (found.description, "dim"))
             options.append(Option(text, id=f"set-{found.name}"))
-        options.append(None)
-        options.append(Option(Text("Open a file …  (o)", style="bold"), id="file"))
         return options
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
         """Open what is chosen."""
         chosen = event.option.id or ""
         kind, _, name = chosen.partition("-")
-        if kind == "kept":
-            self.dismiss(self._kept[int(name)])
-        elif kind == "set":
-            self.dismiss(name)
-        else:
-            self.action_file()
+        self.dismiss(self._kept[int(name)] if kind == "kept" else name)
+
+    def on_button_pressed(self) -> None:
+        """Ask for a file."""
+        self.action_file()
 
     def action_file(self) -> None:
         """Ask for a file."""
