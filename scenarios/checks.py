@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Protocol
 
 from algorithms.errors import RequestError
 from algorithms.parameters import FieldError, Problem, unknown
-from scenarios.model import Experiment, InitiatorEntry, Scenario, ScenarioSet
-from scenarios.sweeps import points
+from scenarios.experiments import Experiment, InitiationExperiment
+from scenarios.model import ScenarioSet
+from scenarios.sweeps import SINGULAR, points
+
+
+class Named(Protocol):
+    """Any element of a set."""
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
 
 
 def inconsistencies(given: ScenarioSet) -> Iterator[Problem]:
@@ -32,9 +42,8 @@ def inconsistencies(given: ScenarioSet) -> Iterator[Problem]:
 
 
 def _repeated_names(given: ScenarioSet) -> Iterator[Problem]:
-    lists: dict[str, Sequence[Scenario | InitiatorEntry | Experiment]] = {
-        "scenarios": given.scenarios,
-        "initiators": given.initiators,
+    lists: dict[str, Sequence[Named]] = {
+        **{part: getattr(given, part) for part in SINGULAR},
         "experiments": given.experiments,
     }
     for part, items in lists.items():
@@ -49,22 +58,19 @@ def _repeated_names(given: ScenarioSet) -> Iterator[Problem]:
 
 
 def _unknown_names(given: ScenarioSet, experiment: Experiment) -> Iterator[Problem]:
-    chosen = {
-        "scenarios": (experiment.scenarios, [scenario.name for scenario in given.scenarios]),
-        "initiators": (experiment.initiators, [entry.name for entry in given.initiators]),
-    }
-    for part, (names, known) in chosen.items():
-        for index, name in enumerate(names or ()):
+    for part in experiment.PARTS:
+        names, known = getattr(experiment, part) or (), [found.name for found in getattr(given, part)]
+        for index, name in enumerate(names):
             if name not in known:
-                yield Problem((part, index), unknown(name, known, part[:-1]))
-            elif name in (names or ())[:index]:
+                yield Problem((part, index), unknown(name, known, SINGULAR[part]))
+            elif name in names[:index]:
                 yield Problem((part, index), f"'{name}' is listed already")
-    if not given.initiators:
-        yield Problem(("initiators",), "the set lists no initiators, so nothing can run; give at least one")
+        if not known:
+            yield Problem((part,), f"the set lists no {part}, so nothing can run; give at least one")
 
 
 def _unfit_criterion(given: ScenarioSet, experiment: Experiment) -> Iterator[Problem]:
-    if experiment.criterion.rho is None:
+    if not isinstance(experiment, InitiationExperiment) or experiment.criterion.rho is None:
         return
     for scenario in given.chosen_scenarios(experiment):
         for index, target in enumerate(scenario.targets):

@@ -14,7 +14,9 @@ from algorithms.plots import Plots
 from algorithms.scoring import score
 from algorithms.tracks import Tracks
 from hough_tui.experiments.plain import gathered
-from scenarios.model import InitiatorEntry, MatchCriterion, Scenario
+from scenarios.entries import InitiatorEntry
+from scenarios.experiments import MatchCriterion
+from scenarios.model import Scenario
 from scenarios.simulate import Draw, draw, true_paths, truth
 from scenarios.world import World
 

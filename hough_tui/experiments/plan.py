@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 from algorithms.errors import RequestError
 from algorithms.parameters import Parameters, unknown
-from scenarios.model import Experiment, InitiatorEntry, MatchCriterion, Scenario, ScenarioSet
+from scenarios.entries import InitiatorEntry
+from scenarios.experiments import Experiment, MatchCriterion
+from scenarios.model import Scenario, ScenarioSet
 from scenarios.sweeps import points
 
 LARGEST_CHUNK = 200

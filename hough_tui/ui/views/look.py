@@ -16,7 +16,9 @@ from algorithms.parameters import Parameters
 from hough_tui.experiments.choice import seed_of
 from hough_tui.experiments.look import TrialLook, look, picture
 from hough_tui.ui.views.look_panel import LookPanel
-from scenarios.model import InitiatorEntry, MatchCriterion, Scenario, ScenarioSet
+from scenarios.entries import InitiatorEntry
+from scenarios.experiments import MatchCriterion
+from scenarios.model import Scenario, ScenarioSet
 
 if TYPE_CHECKING:
     from hough_tui.ui.messages import TrialOpened
@@ -87,7 +89,7 @@ class LookView(Widget):
         """Show the set as it is now, the same trial where it is still there."""
         self._given = given
         self._opened = None
-        self._scenario = min(self._scenario, len(given.scenarios) - 1)
+        self._scenario = max(0, min(self._scenario, len(given.scenarios) - 1))
         self._entry = min(self._entry, max(0, len(given.initiators) - 1))
         self._ask()
 
@@ -122,7 +124,7 @@ class LookView(Widget):
 
     def action_scenario(self) -> None:
         """Look at the next scenario."""
-        if self._given is not None:
+        if self._given is not None and self._given.scenarios:
             self.choose((self._scenario + 1) % len(self._given.scenarios))
 
     async def action_side_by_side(self) -> None:
@@ -160,9 +162,10 @@ class LookView(Widget):
     def _begin(self) -> None:
         if self._given is None:
             return
-        if not self._given.initiators:
-            self.query(LookPanel).first().refuse("The set has no initiators.")
-            return
+        for part in ("scenarios", "initiators"):
+            if not getattr(self._given, part):
+                self.query(LookPanel).first().refuse(f"The set has no {part}.")
+                return
         chosen: list[tuple[InitiatorEntry, Parameters | None]]
         if self._opened is not None:
             cell, swept = self._opened.cell, self._opened.cell.swept

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from algorithms.quantisation.advisor import Advice
     from hough_tui.experiments.forecast import Forecast, VotePicture
     from hough_tui.experiments.vote_cost import VoteCost
-    from scenarios.model import InitiatorEntry, Scenario
+    from scenarios.entries import InitiatorEntry
+    from scenarios.model import Scenario
 
 DEBOUNCE = 0.03
 """Seconds without a further change before all is predicted anew."""
