@@ -51,8 +51,8 @@ def _fitting_sheet(title: str, rows: Sequence[Row]) -> Sheet:
     if len(of_scenes) == len(rows):
         return count_sheet(title, rows)
     first, second = _sheet(title, rows), count_sheet(title, rows)
-    known = {column.name for column in first.columns}
-    further = tuple(column for column in second.columns if column.name not in known)
+    known = {(column.name, column.called) for column in first.columns}
+    further = tuple(column for column in second.columns if (column.name, column.called) not in known)
     return Sheet(title, first.columns + further, first.notes + second.notes, first.warnings + second.warnings)
 
 
