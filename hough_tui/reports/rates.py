@@ -89,7 +89,7 @@ def _sheet(title: str, rows: Sequence[Row]) -> Sheet:
     units = list(dict.fromkeys(str(row.get("unit") or "") for row in rows))
     unit = units[0] if len(units) == 1 else ""
     columns = [
-        *name_columns(rows, "scenario", "initiator"),
+        *name_columns(rows, "scenario", "clustering", "initiator"),
         *swept_columns(rows),
         *_success(rows),
         *_false(rows),

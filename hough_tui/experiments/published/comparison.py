@@ -48,7 +48,7 @@ def plan_table(table: PublishedTable, trials: int, seed: int | None = None) -> P
             sweep = {
                 key: list(dict.fromkeys(entry.swept[key] for entry in wanted)) for key in experiment.sweep
             }
-            update = {experiment.PARTS[-1]: names, "sweep": sweep}
+            update = {experiment.parts[-1]: names, "sweep": sweep}
             experiments.append(experiment.model_copy(update=update))
     return plan_run([given.model_copy(update={"experiments": experiments})], trials=trials, seed=seed)
 

@@ -15,6 +15,7 @@ from algorithms.errors import RequestError
 from algorithms.parameters import Parameters
 from hough_tui.experiments.choice import seed_of
 from hough_tui.experiments.look import TrialLook, look, picture
+from hough_tui.experiments.plot_sources import Stage
 from hough_tui.ui.views.look_panel import LookPanel
 from scenarios.entries import InitiatorEntry
 from scenarios.experiments import MatchCriterion
@@ -170,14 +171,14 @@ class LookView(Widget):
         if self._opened is not None:
             cell, swept = self._opened.cell, self._opened.cell.swept
             scenario, seed, criterion = cell.scenario, cell.experiment.seed, cell.criterion
-            chosen = [(cell.entry, cell.parameters)]
+            chosen, stage = [(cell.entry, cell.parameters)], cell.clustering
         else:
             scenario, swept = self._given.scenarios[self._scenario], None
             seed, criterion = seed_of(self._given, scenario), criterion_of(self._given, scenario)
-            chosen = [(self._given.initiators[self._entry], None)]
+            chosen, stage = [(self._given.initiators[self._entry], None)], None
         if self._is_double:
             chosen.append((self._given.initiators[(self._entry + 1) % len(self._given.initiators)], None))
-        self._work(scenario, seed, self._trial, chosen, criterion, swept)
+        self._work(scenario, seed, self._trial, chosen, criterion, swept, stage)
 
     @work(thread=True, exclusive=True, exit_on_error=False, group="look", name="look")
     def _work(
@@ -188,10 +189,11 @@ class LookView(Widget):
         chosen: list[tuple[InitiatorEntry, Parameters | None]],
         criterion: MatchCriterion | None,
         swept: dict[str, int | float] | None,
+        stage: Stage,
     ) -> None:
         """Draw the trial and let the initiators work on it."""
         worker = get_current_worker()
-        drawn = picture(scenario, seed, trial)
+        drawn = picture(scenario, seed, trial, stage)
         found: list[TrialLook | str] = []
         for entry, parameters in chosen:
             if worker.is_cancelled:

@@ -162,7 +162,7 @@ def test_every_figure_has_its_cell_in_a_bundled_set():
         experiments = {experiment.name: experiment for experiment in given.experiments}
         for entry in table.entries:
             experiment = experiments[entry.experiment]
-            worlds, *_, methods = (given.chosen(experiment, part) for part in experiment.PARTS)
+            worlds, *_, methods = (given.chosen(experiment, part) for part in experiment.parts)
             assert entry.method in [found.name for found in methods]
             assert entry.world is None or entry.world in [found.name for found in worlds]
             assert set(entry.swept) == set(experiment.sweep)
