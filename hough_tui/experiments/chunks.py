@@ -24,7 +24,6 @@ from scenarios.experiments import InitiationExperiment, MatchCriterion
 from scenarios.model import Scenario
 from scenarios.simulate import Draw, truth
 
-
 POINT = 10.0
 """Plots that a point counts for in the size of a chunk: initiators combine the plots of a target."""
 
