@@ -16,6 +16,7 @@ from textual.css.query import NoMatches
 from textual.keys import _character_to_key
 from textual.message_pump import MessagePump
 from textual.pilot import Pilot
+from textual.timer import Timer
 from textual.widget import Widget
 from textual.widgets import Input, TabbedContent
 
@@ -32,6 +33,9 @@ SHORT_PATIENCE = 1.0
 
 CALM = 4
 """Turns of the event loop without a message: what comes from another thread takes some to arrive."""
+
+SOON = 0.05
+"""Seconds of a delay that is waited for: fields and pictures gather what is typed for less than that."""
 
 Place = tuple[str | int, ...]
 Condition = Callable[[], Any]
@@ -51,18 +55,25 @@ async def dealt_with(app: App[Any], patience: float = PATIENCE) -> None:
         screen._on_timer_update()
         await asyncio.sleep(0 if turns < 50 else 0.002)
         turns += 1
-        is_calm = app._resize_timer is None and all(
-            map(_is_waiting, (app, *screen.walk_children(with_self=True)))
-        )
+        is_calm = all(map(_is_waiting, (app, *screen.walk_children(with_self=True))))
         calm = calm + 1 if is_calm else 0
         if time.monotonic() > limit:
             raise AssertionError("something does not come to an end")
 
 
 def _is_waiting(pump: MessagePump) -> bool:
-    """Return whether a widget has dealt with all messages, and is not in the middle of one."""
+    """Return whether a widget has dealt with all messages, is not in the middle of one, and puts none off."""
+    if not pump._running:
+        return True
     ready = pump._message_queue.ready_event
-    return not pump._running or (not ready.is_set() and any(not waiter.done() for waiter in ready._waiters))
+    if ready.is_set() or all(waiter.done() for waiter in ready._waiters):
+        return False
+    return not any(map(_is_due_soon, pump._timers))
+
+
+def _is_due_soon(timer: Timer) -> bool:
+    task = timer._task
+    return timer._repeat == 0 and timer._interval <= SOON and task is not None and not task.done()
 
 
 async def idle(min_sleep: float = 0.0, max_sleep: float = SHORT_PATIENCE) -> None:
