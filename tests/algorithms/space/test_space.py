@@ -57,6 +57,18 @@ def test_equal_places_are_within_reach_of_noise_alone():
         assert (len(pairs), every) == (found, 1)
 
 
+def test_plots_of_one_time_are_within_reach_where_noise_may_part_them():
+    # Of two sensors: their scans have two numbers and one time.
+    time, scan = np.zeros(3), np.array([0, 1, 1], np.int32)
+    position = np.array([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [5.0, 0.0, 0.0]])
+    covariance = np.tile(np.eye(3), (3, 1, 1))
+    # The standard deviation of their distance is √2.
+    pairs, every = pairs_within_reach(position, time, scan, covariance, 50.0, 400.0, 3.0, 3)
+    assert (pairs.tolist(), every) == ([[0, 1]], 2)
+    backwards = np.array([1.0, 0.0, 0.0])
+    assert len(pairs_within_reach(position, backwards, scan, covariance, 0.0, 400.0, 3.0, 3)[0]) == 0
+
+
 @steady
 @given(st.integers(0, 2**32))
 def test_components_and_pairs_by_their_first_plot(seed):
