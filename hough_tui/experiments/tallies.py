@@ -42,6 +42,7 @@ def tally(cell: Cell, columns: TrialColumns, seconds: float) -> Row:
         "trials": trials,
         "seed": cell.experiment.seed,
         "unit": cell.scenario.unit.value,
+        "targets": [target.name for target in cell.scenario.targets],
         "success_rate": success[0],
         "success_ci95": success[1],
         "success_by_target": [float(rate) for rate in columns.found.mean(axis=0)],

@@ -27,6 +27,9 @@ HIGH_CONTROL = 0.05
 
 SHORT_KEY = 8
 
+MANY_TARGETS, UNLIKE = 3, 0.1
+"""Where so many targets differ by more than this, their mean says little: success by target goes first."""
+
 
 def rate_sheets(rows: Sequence[Row]) -> list[Sheet]:
     """Return one sheet for each experiment of each set, in the order of their first rows.
@@ -149,12 +152,22 @@ def _by_target(rows: Sequence[Row]) -> list[Column]:
     most = max(map(len, shares), default=0)
     if most < 2:
         return []
+    known = [[share for share in values if share is not None] for values in shares]
+    spread = max((max(values) - min(values) for values in known if values), default=0.0)
+    rank = 35 if most >= MANY_TARGETS and spread > UNLIKE else 90
     columns = []
     for target in range(most):
         cells = [percent(values[target] if target < len(values) else None) for values in shares]
-        heading = f"target {target + 1}\n%"
-        columns.append(Column(heading, aligned(cells), rank=90, quiet=True, called="success by target"))
+        heading = f"{broken(_target_name(rows, target), SHORT_KEY)}\n%"
+        columns.append(Column(heading, aligned(cells), rank=rank, quiet=True, called="success by target"))
     return columns
+
+
+def _target_name(rows: Sequence[Row], target: int) -> str:
+    """Return what all rows call a target, else its number."""
+    names = {(list(row.get("targets") or []) + [None] * (target + 1))[target] for row in rows}
+    name = names.pop() if len(names) == 1 else None
+    return str(name or f"target {target + 1}")
 
 
 def _percents(rows: Sequence[Row], key: str) -> tuple[str, ...]:

@@ -75,6 +75,23 @@ def test_wider_terminals_show_more(rows):
         assert heading in wide
 
 
+def test_success_by_target_goes_before_other_columns_where_several_targets_differ(row):
+    named = {"targets": ["T1", "T2", None]}
+    alike = row(success_by_target=[0.95, 0.9, 0.94], **named)
+    unlike = row(success_by_target=[0.95, 0.1, 0.94], **named)
+    assert "T2" not in drawn(100, *rate_tables([alike], 100))
+    text = drawn(100, *rate_tables([alike, unlike], 100))
+    for heading in ("T1", "T2", "target 3"):
+        assert heading in text
+    assert "10.0" in text
+    # A name that not all rows use names no column.
+    other = row(success_by_target=[0.95, 0.1, 0.94], targets=["T1", "T4", None])
+    text = drawn(160, *rate_tables([unlike, other], 160))
+    assert "T1" in text
+    assert "target 2" in text
+    assert "T4" not in text
+
+
 def test_criteria_in_words(rows):
     first, second, third = (whole(drawn(100, table)) for table in rate_tables(rows, 100))
     assert "A track matches a target when |Δρ| ≤ 3 km, θ not compared." in first
