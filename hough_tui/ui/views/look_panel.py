@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
@@ -16,32 +15,22 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 from algorithms.hough.inspection import columns_of, voters
-from algorithms.scoring import DUPLICATE, FALSE, FINDER
 from hough_tui.reports.documents import track_csv
 from hough_tui.reports.metrics import field_name
 from hough_tui.reports.numerals import as_given
 from hough_tui.ui.copying import copy
 from hough_tui.ui.drawing.shortening import Part
 from hough_tui.ui.screens.why_peak import WhyPeak
+from hough_tui.ui.views.trial_scenes import MOST_DRAWN, STATES, heatmap_scene, layers, plane_scene
 from hough_tui.ui.widgets.caption import Caption
 from hough_tui.ui.widgets.heatmap import Heatmap
-from hough_tui.ui.widgets.heatmap_scene import HeatmapScene
 from hough_tui.ui.widgets.plane import Plane
-from hough_tui.ui.widgets.plane_scene import PlaneScene, PlaneTrack
 from hough_tui.ui.widgets.track_grid import TrackGrid
 
 if TYPE_CHECKING:
-    from algorithms.hough.voting import Accumulator
     from hough_tui.experiments.look import TrialLook
 
-STATES = {FALSE: "false", FINDER: "found", DUPLICATE: "duplicate"}
 PANELS = ("plane", "accumulator", "tracks")
-
-DEVIATION = "deviation"
-"""What the standard deviation of the ρ that voted for a cell is called."""
-
-MOST_DRAWN = 300
-"""Weaker tracks than these are not drawn: they would hide the plots."""
 
 
 class LookPanel(Widget):
@@ -234,54 +223,3 @@ def caption(seen: TrialLook, swept: Mapping[str, int | float] | None = None) -> 
     parts.append(Part(f"{len(seen.picture.plots):,} plots", 4))
     parts.append(Part(f"{seen.seconds * 1e3:.2f} ms", 5))
     return tuple(parts)
-
-
-def plane_scene(seen: TrialLook) -> PlaneScene:
-    """Return the plane of a trial."""
-    position = seen.picture.plots.position[:, :2]
-    tracks = tuple(
-        PlaneTrack(
-            position[seen.tracks.plots[index]],
-            "unknown" if seen.state is None else STATES[int(seen.state[index])],
-            str(index),
-        )
-        for index in range(min(len(seen.tracks), MOST_DRAWN))
-    )
-    picture = seen.picture
-    return PlaneScene(
-        position,
-        picture.plots.scan,
-        picture.scenario.box.plane,
-        picture.scenario.unit.value,
-        picture.origin,
-        picture.paths,
-        tracks,
-    )
-
-
-def layers(accumulator: Accumulator) -> dict[str, NDArray[Any]]:
-    """Return the arrays of an accumulator by what they are called; votes come first."""
-    known = {"votes": accumulator.votes, DEVIATION: accumulator.std, "weighted votes": accumulator.weighted}
-    return {name: values for name, values in known.items() if values is not None}
-
-
-def heatmap_scene(seen: TrialLook, layer: str = "votes") -> HeatmapScene:
-    """Return the accumulator of a trial, or another of its `layers` where it has that."""
-    assert seen.accumulator is not None
-    known = layers(seen.accumulator)
-    shown = layer if layer in known else "votes"
-    grid = seen.accumulator.grid
-    cells = (
-        grid.cell(float(theta), float(rho))
-        for theta, rho in zip(seen.tracks.theta[:MOST_DRAWN], seen.tracks.rho[:MOST_DRAWN], strict=True)
-    )
-    return HeatmapScene(
-        known[shown],
-        np.degrees(grid.theta),
-        grid.rho,
-        seen.picture.scenario.unit.value,
-        shown,
-        tuple(cell for cell in cells if cell is not None),
-        tuple((name, values) for name, values in known.items() if name != shown),
-        is_descending=shown == DEVIATION,
-    )
