@@ -27,6 +27,9 @@ HIGH_CONTROL = 0.05
 
 SHORT_KEY = 8
 
+SUCCESS, BY_TARGET = "success %", "success by target"
+"""The name of the column of success, and what those of each target are called."""
+
 
 def rate_sheets(rows: Sequence[Row]) -> list[Sheet]:
     """Return one sheet for each experiment of each set, in the order of their first rows.
@@ -152,8 +155,8 @@ def _by_target(rows: Sequence[Row]) -> list[Column]:
     columns = []
     for target in range(most):
         cells = [percent(values[target] if target < len(values) else None) for values in shares]
-        heading = f"target {target + 1}\n%"
-        columns.append(Column(heading, aligned(cells), rank=90, quiet=True, called="success by target"))
+        heading = f"target\n{target + 1} %"
+        columns.append(Column(heading, aligned(cells), rank=55, quiet=True, called=BY_TARGET))
     return columns
 
 

@@ -13,6 +13,7 @@ from algorithms.scoring import DUPLICATE, FALSE, FINDER
 from hough_tui.ui.drawing.graticule import Sector
 from hough_tui.ui.widgets.heatmap_scene import HeatmapScene
 from hough_tui.ui.widgets.plane_scene import PlaneScene, PlaneTrack
+from hough_tui.ui.widgets.votes_scene import VotesScene
 from scenarios.sensors import PolarSensor
 
 if TYPE_CHECKING:
@@ -28,8 +29,10 @@ DEVIATION = "deviation"
 MOST_DRAWN = 300
 """Weaker tracks than these are not drawn: they would hide the plots."""
 
-GROUND = (0, 1)
-"""The axes of the plane (x, y)."""
+PLANES = ((0, 1), (0, 2), (1, 2))
+"""The axes of the planes xy, xz and yz."""
+
+GROUND = PLANES[0]
 
 
 def sectors(scenario: Scenario) -> tuple[Sector, ...]:
@@ -69,6 +72,7 @@ def picture_scene(
         tracks,
         seen_there,
         ("xyz"[axes[0]], "xyz"[axes[1]]),
+        is_projection=scenario.dimensions == 3,
         # Where none is given, the region is but a box around the sectors.
         is_framed=scenario.region is not None or not seen_there,
     )
@@ -86,6 +90,21 @@ def plane_scene(seen: TrialLook, axes: tuple[int, int] = GROUND) -> PlaneScene:
         for index in range(min(len(seen.tracks), MOST_DRAWN))
     )
     return picture_scene(seen.picture, tracks, axes)
+
+
+def votes_scene(seen: TrialLook, plane: int) -> VotesScene:
+    """Return the votes of pairs in one of `PLANES`."""
+    votes = seen.plane_votes
+    assert votes is not None
+    return VotesScene(
+        "".join("xyz"[axis] for axis in PLANES[plane]),
+        np.degrees(votes.theta[plane]),
+        votes.distance[plane],
+        votes.confirmed[plane],
+        votes.pairs,
+        seen.picture.plots.scan[votes.pairs],
+        seen.picture.scenario.unit.value,
+    )
 
 
 def layers(accumulator: Accumulator) -> dict[str, NDArray[Any]]:

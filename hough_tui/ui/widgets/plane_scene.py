@@ -84,6 +84,7 @@ class PlaneScene:
     tracks : the tracks
     sectors : what polar sensors see; rings and spokes are drawn about their stations
     names : what the axes are called
+    is_projection : whether it is one of the planes on which space is projected
     is_framed : whether the region has a frame
     """
 
@@ -96,6 +97,7 @@ class PlaneScene:
     tracks: tuple[PlaneTrack, ...] = ()
     sectors: tuple[Sector, ...] = ()
     names: tuple[str, str] = ("x", "y")
+    is_projection: bool = False
     is_framed: bool = True
 
     def __post_init__(self) -> None:
