@@ -152,11 +152,13 @@ def _by_target(rows: Sequence[Row]) -> list[Column]:
     most = max(map(len, shares), default=0)
     if most < 2:
         return []
+    # Of two targets the mean tells nearly as much; of more it hides which of them is missed.
+    rank = 90 if most == 2 else 55
     columns = []
     for target in range(most):
         cells = [percent(values[target] if target < len(values) else None) for values in shares]
         heading = f"target\n{target + 1} %"
-        columns.append(Column(heading, aligned(cells), rank=55, quiet=True, called=BY_TARGET))
+        columns.append(Column(heading, aligned(cells), rank=rank, quiet=True, called=BY_TARGET))
     return columns
 
 

@@ -71,7 +71,7 @@ def test_wider_terminals_show_more(rows):
     narrow, wide = (whole(drawn(width, rate_tables(rows, width)[0])) for width in (60, 160))
     assert "A wider terminal also shows" in narrow
     assert "A wider terminal also shows" not in wide
-    for heading in ("control", "duplic.", "θ RMSE", "ρ RMSE", "µs", "target 2"):
+    for heading in ("control", "duplic.", "θ RMSE", "ρ RMSE", "µs", "target", "2 %"):
         assert heading in wide
 
 
