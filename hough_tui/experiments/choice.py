@@ -72,6 +72,6 @@ def why_not_in_plane(entry: InitiatorEntry, scenario: Scenario) -> str | None:
     if entry.algorithm.dimensions <= scenario.dimensions:
         return None
     return (
-        f"{entry.initiator} works in space, and the scenario {scenario.name} lies in the plane: it cannot "
-        "run there; give sensor and targets a z, or take an initiator of the plane"
+        f"{entry.initiator} works in space, and {scenario.name} lies in the plane: it cannot run there; give "
+        "sensor and targets a z"
     )
