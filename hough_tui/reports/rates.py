@@ -30,6 +30,9 @@ SHORT_KEY = 8
 MANY_TARGETS, UNLIKE = 3, 0.1
 """Where so many targets differ by more than this, their mean says little: success by target goes first."""
 
+SUCCESS, BY_TARGET = "success %", "success by target"
+"""The name of the column of success, and what those of each target are called."""
+
 
 def rate_sheets(rows: Sequence[Row]) -> list[Sheet]:
     """Return one sheet for each experiment of each set, in the order of their first rows.
@@ -154,12 +157,13 @@ def _by_target(rows: Sequence[Row]) -> list[Column]:
         return []
     known = [[share for share in values if share is not None] for values in shares]
     spread = max((max(values) - min(values) for values in known if values), default=0.0)
-    rank = 35 if most >= MANY_TARGETS and spread > UNLIKE else 90
+    # Of two targets the mean tells nearly as much; of more it hides which of them is missed.
+    rank = 90 if most < MANY_TARGETS else 35 if spread > UNLIKE else 55
     columns = []
     for target in range(most):
         cells = [percent(values[target] if target < len(values) else None) for values in shares]
         heading = f"{broken(_target_name(rows, target), SHORT_KEY)}\n%"
-        columns.append(Column(heading, aligned(cells), rank=rank, quiet=True, called="success by target"))
+        columns.append(Column(heading, aligned(cells), rank=rank, quiet=True, called=BY_TARGET))
     return columns
 
 
