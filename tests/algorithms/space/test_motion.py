@@ -14,7 +14,7 @@ from algorithms.space.motion import choose_disjoint, search_motions, write_track
 steady = settings(deadline=None, derandomize=True, max_examples=40)
 
 SLOWEST, FASTEST = 50.0, 400.0
-LIMITS = np.array([[np.inf, np.inf, np.inf, 6.0, 10.0, 14.0], [np.inf, np.inf, np.inf, 12.0, 16.0, 20.0]])
+LIMITS = np.array([[np.inf, np.inf, np.inf, 6.0, 10.0, 14.0], [np.inf, np.inf, np.inf, 7.0, 11.0, 15.0]])
 PLANES = np.array([[0, 2], [1, 2]])
 
 
