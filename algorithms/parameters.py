@@ -13,10 +13,11 @@ import typing
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Annotated, Any, Literal, Self, TypeVar, Union
+from typing import Annotated, Any, Final, Literal, Self, TypeVar, Union
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic.fields import FieldInfo
+from pydantic_core import PydanticCustomError
 
 from algorithms.context import Context
 from algorithms.errors import RequestError
@@ -39,6 +40,9 @@ NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
 Name = Annotated[str, Field(min_length=1, pattern=NAME)]
 Flag = Annotated[bool, Field(strict=True)]
 Auto = Literal["auto"]
+
+
+MISSING_EITHER: Final = "missing_either"
 
 
 class Dimension(StrEnum):
@@ -148,6 +152,11 @@ def dotted(path: Path) -> str:
     return text.lstrip(".")
 
 
+def missing_either(other: str) -> PydanticCustomError:
+    """Return the error of a validator of a field that must be given, or something else in its place."""
+    return PydanticCustomError(MISSING_EITHER, "missing, and {other} is missing, too", {"other": other})
+
+
 def validated(model: type[Model], data: Any, what: str) -> Model:
     """Return data as a model.
 
@@ -181,7 +190,7 @@ def problems(error: ValidationError, model: type[BaseModel], data: Any) -> list[
             detail["ctx"] = {"needed": detail["loc"][-1] + 1}
             detail["type"], detail["input"] = "too_few", _value_at(data, path)
         else:
-            path = _path_in(data, detail["loc"], missing=detail["type"] == "missing")
+            path = _path_in(data, detail["loc"], missing=detail["type"] in ("missing", MISSING_EITHER))
         gathered.setdefault(path, []).append(detail)
     # Where one alternative fails deeper inside, the failure of the others says nothing more.
     outer = {path[:length] for path in gathered for length in range(len(path))}
@@ -196,6 +205,8 @@ def _problem(path: Path, details: list[Any], model: type[BaseModel], data: Any) 
         return Problem(path, f"the name {_shown(first['input'])} is no text", on_key=True)
     if first["type"] == "missing":
         return Problem(path, "is missing; it must be given", on_key=True)
+    if first["type"] == MISSING_EITHER:
+        return Problem(path, f"is missing; it must be given, or {first['ctx']['other']}", on_key=True)
     if first["type"] == "value_error":
         return Problem(path, str(first["ctx"]["error"]))
     if first["type"] == "union_tag_invalid":

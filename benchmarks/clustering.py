@@ -18,18 +18,13 @@ from algorithms.clustering.modes import cluster
 from algorithms.clustering.parameters import Clustering, CorrectedPatent, Dbscan, KMeans, Recommended
 from algorithms.clustering.points import Points
 from algorithms.clustering.scoring import score_clusters
-from scenarios.range_doppler import (
-    DOPPLER_EXTENT,
-    RANGE_EXTENT,
-    SCENES,
-    ExtendedTarget,
-    RangeDopplerScene,
-    draw_scene,
-)
+from scenarios.files import load_set
+from scenarios.range_doppler import draw_scene
+from scenarios.scenes import ExtendedTarget, Scene, SceneRegion
 
 TRIALS = 200
 SEED = 1
-EXTENTS = {"range_extent": RANGE_EXTENT, "doppler_extent": DOPPLER_EXTENT}
+EXTENTS = {"range_extent": 16.0, "doppler_extent": 12.0}
 
 CHUNKS = 4
 """Pieces of the same points for the threads."""
@@ -37,10 +32,14 @@ CHUNKS = 4
 
 def many_points() -> Points:
     """Return 10⁵ points in 100 scans: 36 targets of 24 points in each, and interference."""
-    targets = tuple(
-        ExtendedTarget(60.0 * (column + 1), 50.0 * (row + 1)) for column in range(6) for row in range(6)
-    )
-    scene = RangeDopplerScene(targets, 1000 - 24 * len(targets), ((0.0, 420.0), (0.0, 350.0)))
+    targets = [
+        ExtendedTarget(range=60.0 * (column + 1), doppler=50.0 * (row + 1))
+        for column in range(6)
+        for row in range(6)
+    ]
+    region = SceneRegion(range=(0.0, 420.0), doppler=(0.0, 350.0))
+    stray = 1000 - 24 * len(targets)
+    scene = Scene(name="many", region=region, interference=stray, targets=targets)
     return draw_scene(scene, SEED, 0, 100).points
 
 
@@ -49,7 +48,7 @@ def times() -> None:
     points = many_points()
     modes: dict[str, Clustering] = {
         "recommended": Recommended(**EXTENTS),
-        "corrected-patent": CorrectedPatent(range_extent=RANGE_EXTENT),
+        "corrected-patent": CorrectedPatent(range_extent=EXTENTS["range_extent"]),
         "DBSCAN": Dbscan(**EXTENTS),
     }
     contenders: dict[str, Callable[[], object]] = {
@@ -101,28 +100,27 @@ def two_threads(points: Points) -> None:
 
 def scenes() -> None:
     """Print exact counts and centroid errors of every mode on every kind of scene."""
+    kinds = {scene.name: scene for scene in load_set("range-doppler").scenes}
     print(f"exact count % / centroid RMSE in cells, {TRIALS} scenes each, seed {SEED}")
     rows: dict[str, Callable[[int], Clustering]] = {
-        "corrected-patent": lambda _: CorrectedPatent(range_extent=RANGE_EXTENT),
+        "corrected-patent": lambda _: CorrectedPatent(range_extent=EXTENTS["range_extent"]),
         "recommended": lambda _: Recommended(**EXTENTS),
         "k-means, number known": lambda number: KMeans(number=number, **EXTENTS),
         "DBSCAN": lambda _: Dbscan(**EXTENTS),
     }
-    print("  " + "".join(f"{name:>14}" for name in ("", *SCENES)).replace(" " * 14, " " * 21, 1))
+    print("  " + "".join(f"{name:>14}" for name in ("", *kinds)).replace(" " * 14, " " * 21, 1))
     found = {}
     for row, mode in rows.items():
         cells = []
-        for name, scene in SCENES.items():
+        for name, scene in kinds.items():
             drawn = draw_scene(scene, SEED, 0, TRIALS)
             score = score_clusters(cluster(drawn.points, mode(len(scene.targets))), drawn.centres)
             found[row, name] = score
             cells.append(f"{f'{100.0 * score.exact_rate:.4g}/{score.rmse:.2f}':>14}")
         print(f"  {row:21}" + "".join(cells))
-    least = min(found["recommended", name].exact_rate for name in SCENES)
+    least = min(found["recommended", name].exact_rate for name in kinds)
     print(f"  recommended, least exact count {100 * least:.4g} % (bound 97 %: {at_least(least, 0.97)})")
-    worst = max(
-        found["recommended", name].rmse / found["k-means, number known", name].rmse for name in SCENES
-    )
+    worst = max(found["recommended", name].rmse / found["k-means, number known", name].rmse for name in kinds)
     print(f"  recommended / k-means, worst centroid RMSE: {worst:.3f} (bound 1.1: {verdict(worst, 1.1)})")
 
 

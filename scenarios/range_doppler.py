@@ -1,7 +1,8 @@
-"""Scenes of extended targets in the range-Doppler plane, and draws of their points.
+"""Draws of scenes: the points of extended targets in the range-Doppler plane.
 
-Trial k of a scene with a seed is the same draw whatever the chunk. Each target and the interference
-have streams of their own, so that a scene without interference has the same points of its targets.
+Trial k of a scene with a seed is the same draw whatever the chunk. Each target, the interference and
+the noise have streams of their own, so that a scene without interference has the same points of its
+targets.
 """
 
 from __future__ import annotations
@@ -15,51 +16,10 @@ from numpy.typing import NDArray
 from algorithms.clustering.points import Points
 from algorithms.compiled import kernel
 from algorithms.streams import normal_pair, uniform_pair
+from scenarios.scenes import Scene
+from scenarios.world import poisson_distribution
 
 Array = NDArray[np.float64]
-
-RANGE_EXTENT, DOPPLER_EXTENT = 16.0, 12.0
-"""The greatest extents of a target in the scenes below, in cells."""
-
-SPREAD = (3.0, 2.0)
-"""Standard deviations of a target's points in the scenes below, in cells."""
-
-
-@dataclass(frozen=True, slots=True)
-class ExtendedTarget:
-    """A target that a high-resolution radar sees as many points, gaussian about its centre.
-
-    Attributes
-    ----------
-    range, doppler : its centre, in cells
-    scatter : how far the centre of a trial lies from there at most, evenly, in range and in Doppler
-    points : how many it gives in a scan
-    spread : standard deviations of its points in range and in Doppler
-    correlation : of the two, −1 to 1
-    """
-
-    range: float
-    doppler: float
-    scatter: tuple[float, float] = (0.5, 0.5)
-    points: int = 24
-    spread: tuple[float, float] = SPREAD
-    correlation: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class RangeDopplerScene:
-    """Extended targets, and points that no target caused.
-
-    Attributes
-    ----------
-    targets : each with a scatter of half a cell at least, as cells are nothing to them
-    interference : number of further points in a scan, uniform over `region`
-    region : lowest and highest cell in range, and in Doppler
-    """
-
-    targets: tuple[ExtendedTarget, ...]
-    interference: int = 0
-    region: tuple[tuple[float, float], tuple[float, float]] = ((0.0, 120.0), (0.0, 90.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,69 +38,74 @@ class SceneDraw:
     centres: Array
 
 
-APART = (ExtendedTarget(30, 35, (8.0, 12.0)), ExtendedTarget(75, 55, (8.0, 12.0)))
-"""Two targets far from each other in range, and in some trials in Doppler."""
-
-SCENES: dict[str, RangeDopplerScene] = {
-    "same Doppler": RangeDopplerScene((ExtendedTarget(30, 45), ExtendedTarget(75, 45))),
-    "separated": RangeDopplerScene(APART),
-    "unequal": RangeDopplerScene(
-        (ExtendedTarget(30, 40, (2.0, 4.0), points=60), ExtendedTarget(60, 45, (2.0, 4.0), points=12))
-    ),
-    "diagonal": RangeDopplerScene(
-        tuple(ExtendedTarget(at, at, (2.0, 2.0), correlation=0.7) for at in (15.0, 45.0, 75.0))
-    ),
-    "same range": RangeDopplerScene((ExtendedTarget(60, 25), ExtendedTarget(60, 65))),
-    "interference": RangeDopplerScene(APART, interference=10),
-    "close": RangeDopplerScene((ExtendedTarget(50, 40, (1.0, 2.0)), ExtendedTarget(71, 47, (1.0, 2.0)))),
-}
-"""The seven kinds of scene by which methods of clustering are compared."""
+# Streams of a scene: 0 of what no target causes, then one a target. In stream 0 the interference is
+# drawn as of scan 0, noise as of scan 1, its number before its points.
+STRAY = 0
+INTERFERENCE, NOISE = 0, 1
 
 
 @kernel
-def _draw(seed, first_trial, trials, targets, counts, interference, lower, size):  # type: ignore[no-untyped-def]
-    """Return points (range, Doppler, amplitude), origins and centres of trials.
+def _rayleigh(seed, block, number, stream, trial, scale):  # type: ignore[no-untyped-def]
+    chance, _ = uniform_pair(seed, block, number, stream, trial)
+    return scale * math.sqrt(-2.0 * math.log(1.0 - chance))
+
+
+@kernel
+def _noise_count(seed, trial, distribution):  # type: ignore[no-untyped-def]
+    chance, _ = uniform_pair(seed, 0, NOISE, STRAY, trial)
+    return min(np.searchsorted(distribution, chance, side="right"), len(distribution) - 1)
+
+
+@kernel
+def _draw(  # type: ignore[no-untyped-def]
+    seed, first_trial, trials, targets, counts, interference, noise, amplitude, lower, size
+):  # fmt: skip
+    """Return points (range, Doppler, amplitude), origins, offsets and centres of trials.
 
     Parameters
     ----------
-    targets : float64 (targets, 7), range, Doppler, scatter in both, spread in both, correlation
+    targets : float64 (targets, 8), range, Doppler, scatter in both, spread in both, correlation,
+        amplitude
     counts : int64 (targets,), points of each
-    interference : number of further points
+    interference : number of points that no target causes
+    noise : float64, distribution function of the number of further such points
+    amplitude : of the points that no target causes
     lower, size : float64 (2,), the region
     """
-    each = counts.sum() + interference
-    points = np.empty((trials * each, 3))
-    origin = np.empty(trials * each, np.int32)
-    centres = np.empty((trials, len(counts), 2))
-    row = 0
+    offsets = np.zeros(trials + 1, np.int64)
     for k in range(trials):
-        trial = first_trial + k
+        number = _noise_count(seed, first_trial + k, noise)
+        offsets[k + 1] = offsets[k] + counts.sum() + interference + number
+    points = np.empty((offsets[trials], 3))
+    origin = np.full(offsets[trials], -1, np.int32)
+    centres = np.empty((trials, len(counts), 2))
+    for k in range(trials):
+        trial, row = first_trial + k, offsets[k]
         for target in range(len(counts)):
-            r, d, scatter_r, scatter_d, spread_r, spread_d, correlation = targets[target]
+            r, d, scatter_r, scatter_d, spread_r, spread_d, correlation, scale = targets[target]
             u, v = uniform_pair(seed, 0, 0, target + 1, trial)
             centres[k, target, 0] = r + scatter_r * (2.0 * u - 1.0)
             centres[k, target, 1] = d + scatter_d * (2.0 * v - 1.0)
             for point in range(counts[target]):
                 x, y = normal_pair(seed, 2 * point + 1, 0, target + 1, trial)
-                chance, _ = uniform_pair(seed, 2 * point + 2, 0, target + 1, trial)
                 y = correlation * x + math.sqrt(1.0 - correlation * correlation) * y
                 points[row, 0] = np.rint(centres[k, target, 0] + spread_r * x)
                 points[row, 1] = np.rint(centres[k, target, 1] + spread_d * y)
-                points[row, 2] = math.sqrt(-2.0 * math.log(1.0 - chance))
+                points[row, 2] = _rayleigh(seed, 2 * point + 2, 0, target + 1, trial, scale)
                 origin[row] = target
                 row += 1
-        for point in range(interference):
-            u, v = uniform_pair(seed, 2 * point + 1, 0, 0, trial)
-            chance, _ = uniform_pair(seed, 2 * point + 2, 0, 0, trial)
-            points[row, 0] = np.rint(lower[0] + u * size[0])
-            points[row, 1] = np.rint(lower[1] + v * size[1])
-            points[row, 2] = math.sqrt(-2.0 * math.log(1.0 - chance))
-            origin[row] = -1
-            row += 1
-    return points, origin, centres
+        further = offsets[k + 1] - row - interference
+        for source, number in ((INTERFERENCE, interference), (NOISE, further)):
+            for point in range(number):
+                u, v = uniform_pair(seed, 2 * point + 1, source, STRAY, trial)
+                points[row, 0] = np.rint(lower[0] + u * size[0])
+                points[row, 1] = np.rint(lower[1] + v * size[1])
+                points[row, 2] = _rayleigh(seed, 2 * point + 2, source, STRAY, trial, amplitude)
+                row += 1
+    return points, origin, offsets, centres
 
 
-def draw_scene(scene: RangeDopplerScene, seed: int, trial: int, trials: int = 1) -> SceneDraw:
+def draw_scene(scene: Scene, seed: int, trial: int, trials: int = 1) -> SceneDraw:
     """Return the points of trials of a scene.
 
     Parameters
@@ -149,15 +114,14 @@ def draw_scene(scene: RangeDopplerScene, seed: int, trial: int, trials: int = 1)
     trial, trials : the first one, and how many
     """
     given = [
-        (target.range, target.doppler, *target.scatter, *target.spread, target.correlation)
+        (target.range, target.doppler, *target.scatter, *target.spread, target.correlation, target.amplitude)
         for target in scene.targets
     ]
     counts = np.array([target.points for target in scene.targets], np.int64)
-    bounds = np.array(scene.region, float)
-    points, origin, centres = _draw(
-        np.uint64(seed), trial, trials, np.array(given, float).reshape(-1, 7), counts,
-        scene.interference, bounds[:, 0].copy(), bounds[:, 1] - bounds[:, 0],
+    bounds = np.array([scene.region.range, scene.region.doppler])
+    points, origin, offsets, centres = _draw(
+        np.uint64(seed), trial, trials, np.array(given, float).reshape(-1, 8), counts, scene.interference,
+        poisson_distribution(scene.noise), scene.amplitude, bounds[:, 0].copy(), bounds[:, 1] - bounds[:, 0],
     )  # fmt: skip
-    offsets = np.arange(trials + 1, dtype=np.int64) * (int(counts.sum()) + scene.interference)
     along, doppler, amplitude = (points[:, column] for column in range(3))
     return SceneDraw(Points.of(along, doppler, amplitude, offsets), origin, centres)

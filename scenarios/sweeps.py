@@ -1,28 +1,40 @@
-"""Sweeps: one experiment into its points, a scenario and an initiator with every swept value put in."""
+"""Sweeps: one experiment into its points, what runs on what with every swept value put in."""
 
 from __future__ import annotations
 
 import difflib
 import itertools
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from algorithms.errors import RequestError
 from algorithms.parameters import (
+    Declared,
     FieldError,
-    Parameters,
     Path,
     Problem,
     numeric_paths,
     replaced,
 )
-from scenarios.model import Experiment, InitiatorEntry, Scenario, ScenarioSet
+from scenarios.entries import InitiatorEntry
+from scenarios.experiments import Experiment
+from scenarios.model import Scenario, ScenarioSet
 
 MOST_POINTS = 20_000
 """The most points of one experiment."""
 
-PARTS = ("scenario", "initiator")
+SINGULAR = {
+    "scenarios": "scenario",
+    "scenes": "scene",
+    "clusterings": "clustering",
+    "initiators": "initiator",
+}
+"""How an element of a list of a set is called, and a swept field of it begins."""
+
+Elements = Mapping[str, Sequence[Declared | None]]
+"""The elements of each part, `scenario`, `initiator` and so on, in which a swept field may be."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,16 +43,26 @@ class Point:
 
     Attributes
     ----------
-    scenario : with the swept values put in
-    entry : the initiator entry as the set lists it
-    parameters : its parameters with the swept values put in and every `auto` worked out
+    elements : of each part (`scenario`, `initiator` and so on) one, with the swept values put in
+    parameters : those of the last of them, which runs, with every `auto` worked out
     swept : the swept values by their keys as they were written
     """
 
-    scenario: Scenario
-    entry: InitiatorEntry
-    parameters: Parameters
+    elements: Mapping[str, Any]
+    parameters: Any
     swept: dict[str, int | float]
+
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario, of an experiment that has some."""
+        found: Scenario = self.elements["scenario"]
+        return found
+
+    @property
+    def entry(self) -> InitiatorEntry:
+        """The initiator entry, of an experiment that has some."""
+        found: InitiatorEntry = self.elements["initiator"]
+        return found
 
 
 def points(given: ScenarioSet, experiment: Experiment) -> Iterator[Point]:
@@ -52,50 +74,54 @@ def points(given: ScenarioSet, experiment: Experiment) -> Iterator[Point]:
         Where a swept key names no numeric field, or a value is not allowed; its path begins
         at the experiment.
     """
-    scenarios, entries = given.chosen_scenarios(experiment), given.chosen_entries(experiment)
-    total = len(scenarios) * len(entries)
-    for values in experiment.sweep.values():
-        total *= len(values)
+    parts: Elements = {SINGULAR[part]: given.chosen(experiment, part) for part in experiment.parts}
+    total = 1
+    for several in (*parts.values(), *experiment.sweep.values()):
+        total *= len(several)
     if total > MOST_POINTS:
         raise FieldError(
             Problem(
                 ("sweep",), f"{total:,} points are given; the limit is {MOST_POINTS:,}; sweep fewer values"
             )
         )
-    for scenario, entry in itertools.product(scenarios, entries):
-        places = [place(key, scenario, entries) for key in experiment.sweep]
+    world = next(iter(parts))
+    for chosen in itertools.product(*parts.values()):
+        elements = dict(zip(parts, chosen, strict=True))
+        # What is drawn is swept in the one at hand, a parameter in all that are compared.
+        within = {**parts, world: [elements[world]]}
+        places = [place_among(key, within) for key in experiment.sweep]
         for key, found in zip(experiment.sweep, places, strict=True):
             first = list(experiment.sweep)[places.index(found)]
             if first != key:
                 message = f"'{key}' is the field that '{first}' is; sweep it once"
                 raise FieldError(Problem(("sweep", key), message, on_key=True))
         for combination in itertools.product(*experiment.sweep.values()):
-            yield _point(scenario, entry, experiment, places, combination)
+            yield _point(elements, experiment, places, combination)
 
 
 def _point(
-    scenario: Scenario,
-    entry: InitiatorEntry,
+    elements: Mapping[str, Any],
     experiment: Experiment,
     places: Sequence[tuple[str, Path]],
     values: Sequence[int | float],
 ) -> Point:
-    parts: dict[str, dict[Path, int | float]] = {"scenario": {}, "initiator": {}}
+    changes: dict[str, dict[Path, int | float]] = {part: {} for part in elements}
     for (part, path), value in zip(places, values, strict=True):
-        parts[part][path] = value
+        changes[part][path] = value
     keys = dict(zip(places, experiment.sweep, strict=True))
+    found: dict[str, Any] = {}
+    for part, element in elements.items():
+        try:
+            found[part] = element if element is None else replaced(element, changes[part])
+        except FieldError as error:
+            raise _placed(error, part, keys, experiment, values) from None
+    world, *_, method = found
     try:
-        part = "scenario"
-        scenario = replaced(scenario, parts[part])
-        part = "initiator"
-        entry = replaced(entry, parts[part])
-    except FieldError as error:
-        raise _placed(error, part, keys, experiment, values) from None
-    try:
-        parameters = entry.parameters.resolved(scenario.context)
+        parameters = found[method].resolved_on(found[world])
     except RequestError as error:
-        raise FieldError(Problem((), f"initiator {entry.name} on {scenario.name}: {error}")) from None
-    return Point(scenario, entry, parameters, dict(zip(experiment.sweep, values, strict=True)))
+        what = f"{method} {found[method].name} on {found[world].name}"
+        raise FieldError(Problem((), f"{what}: {error}")) from None
+    return Point(found, parameters, dict(zip(experiment.sweep, values, strict=True)))
 
 
 def _placed(
@@ -115,24 +141,35 @@ def _placed(
 
 
 def place(key: str, scenario: Scenario, entries: Sequence[InitiatorEntry]) -> tuple[str, Path]:
-    """Return which part a swept key reaches into, `scenario` or `initiator`, and the path in it.
+    """Return which part a key reaches into, `scenario` or `initiator`, and the path in it.
 
-    A key that begins with neither is matched with the ends of all paths; list indices may be
+    Raises
+    ------
+    FieldError
+        As `place_among` does.
+    """
+    return place_among(key, {"scenario": [scenario], "initiator": entries})
+
+
+def place_among(key: str, elements: Elements) -> tuple[str, Path]:
+    """Return which part a swept key reaches into, and the path in it.
+
+    A key that begins with no part is matched with the ends of all paths; list indices may be
     left out where there is only one element.
 
     Raises
     ------
     FieldError
-        Where there is no such numeric field, or more than one.
+        Where there is no such numeric field that all elements of a part have, or more than one.
     """
     wanted = parts_of(key)
-    known = {"scenario": list(numeric_paths(scenario)), "initiator": _common(entries)}
-    if wanted[0] in PARTS and len(wanted) > 1:
+    known = {part: _common(several) for part, several in elements.items()}
+    if wanted[0] in known and len(wanted) > 1:
         part, rest = str(wanted[0]), wanted[1:]
         matches = [(part, path, path) for path in known[part]]
     else:
         rest = wanted
-        matches = [(part, path, path[-len(rest) :]) for part in PARTS for path in known[part]]
+        matches = [(part, path, path[-len(rest) :]) for part in known for path in known[part]]
     # A path as it stands goes before one with its indices left out, the whole of it before its end.
     found = [(part, path) for part, path, end in matches if end == rest]
     found = found or [
@@ -144,13 +181,15 @@ def place(key: str, scenario: Scenario, entries: Sequence[InitiatorEntry]) -> tu
     if found:
         names = ", ".join(written(part, path) for part, path in found)
         raise FieldError(Problem(("sweep", key), f"'{key}' may mean {names}; write one of them", on_key=True))
-    every = [written(part, path) for part in PARTS for path in known[part]]
-    ends = [str(path[-1]) for part in PARTS for path in known[part] if isinstance(path[-1], str)]
+    every = [written(part, path) for part in known for path in known[part]]
+    ends = [str(path[-1]) for part in known for path in known[part] if isinstance(path[-1], str)]
     near = difflib.get_close_matches(key, [*every, *ends], n=1, cutoff=0.5)
     hint = f"; did you mean '{near[0]}'?" if near else ""
     message = f"there is no numeric field '{key}'{hint} (known: {', '.join(every)})"
-    if len(entries) > 1 and wanted[0] != "scenario":
-        message += "; a swept parameter must belong to every initiator of the experiment"
+    asked = [wanted[0]] if wanted[0] in known else list(known)
+    shared = " and every ".join(str(part) for part in asked if len(elements[str(part)]) > 1)
+    if shared:
+        message += f"; a swept parameter must belong to every {shared} of the experiment"
     raise FieldError(Problem(("sweep", key), message, on_key=True))
 
 
@@ -176,7 +215,7 @@ def _is_named(path: Path, wanted: Path, *, whole: bool) -> bool:
     return not whole or not any(isinstance(name, str) for name in left)
 
 
-def _common(entries: Iterable[InitiatorEntry]) -> list[Path]:
-    """Return the numeric parameters that all entries have."""
-    paths = [list(numeric_paths(entry.parameters)) for entry in entries]
+def _common(elements: Sequence[Declared | None]) -> list[Path]:
+    """Return the numeric fields that all elements have."""
+    paths = [[] if element is None else list(numeric_paths(element)) for element in elements]
     return [path for path in paths[0] if all(path in others for others in paths)] if paths else []

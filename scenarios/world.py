@@ -8,7 +8,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.model import Clutter, ExactClutter, PoissonClutter, Scenario
+from scenarios.clutter import Clutter, ExactClutter, PoissonClutter
+from scenarios.model import Scenario
 from scenarios.sensors import CartesianSensor, PolarSensor
 
 Array = NDArray[np.float64]

@@ -40,7 +40,7 @@ def compared_sets(points: Points, parameters: Dbscan | KMeans) -> Sets:
     Raises
     ------
     RequestError
-        Where scikit-learn is not installed.
+        Where scikit-learn is not installed, or the number of targets is still `auto`.
     TooFewPoints
         Where k-means is to find more targets than a scan has different points.
 
@@ -62,17 +62,25 @@ def compared_sets(points: Points, parameters: Dbscan | KMeans) -> Sets:
                 continue
             own = scaled[first:end]
             if isinstance(parameters, Dbscan):
+                if len(own) < parameters.least_points:
+                    continue  # too few for a core, and so for a cluster
                 model = learn.DBSCAN(eps=parameters.eps, min_samples=parameters.least_points)
             else:
-                different = len(np.unique(own, axis=0))
-                if different < parameters.number:
-                    raise TooFewPoints(parameters.number, different, scan)
-                model = learn.KMeans(parameters.number, n_init=10, random_state=parameters.seed)
+                number, different = _number(parameters), len(np.unique(own, axis=0))
+                if different < number:
+                    raise TooFewPoints(number, different, scan)
+                model = learn.KMeans(number, n_init=10, random_state=parameters.seed)
             order, sizes = _grouped(model.fit_predict(own))
             orders.append(first + order)
             counts.append(sizes)
             scans.append(np.full(len(sizes), scan, np.int64))
     return _joined(orders, counts, scans)
+
+
+def _number(parameters: KMeans) -> int:
+    if parameters.number == "auto":
+        raise RequestError("k-means: number: auto is known of a scene's draws alone; give the number")
+    return parameters.number
 
 
 def _scikit_learn(mode: str) -> tuple[Any, Any]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag
 
+from algorithms.errors import RequestError
 from algorithms.parameters import (
+    Auto,
     Count,
     Declared,
     Dimension,
@@ -36,6 +38,15 @@ class Clustering(Declared):
     def is_meant(cls, data: Mapping[str, Any]) -> bool:
         """Return whether data are of this mode; without a mode they are of the recommended one."""
         return bool(mode_of(data) == cls.model_fields["mode"].default)
+
+    def resolved(self, targets: int) -> Self:
+        """Return these parameters with every `auto` worked out.
+
+        Parameters
+        ----------
+        targets : number of targets of the scene
+        """
+        return self
 
 
 class SplittingClustering(Clustering):
@@ -94,10 +105,28 @@ class KMeans(Clustering):
 
     mode: Literal["k-means"] = parameter("k-means", help="how the points of a target are gathered")
     doppler_extent: Positive = with_default(Recommended, "doppler_extent", ...)
-    number: Count = parameter(dimension=Dimension.COUNT, help="the number of targets of each scan")
+    number: Count | Auto = parameter(
+        dimension=Dimension.COUNT,
+        help="the number of targets of each scan",
+        auto="as many as the scene has; of recorded points it must be given",
+    )
     seed: Annotated[Whole, Field(le=2**31 - 1)] = parameter(
         1, help="decides from which centres it begins, the best of ten draws"
     )
+
+    def resolved(self, targets: int) -> Self:
+        """Return these parameters with the number worked out where it is `auto`.
+
+        Raises
+        ------
+        RequestError
+            Where the scene has no target.
+        """
+        if self.number != "auto":
+            return self
+        if targets == 0:
+            raise RequestError("number: auto is as many as the scene has targets, and it has none")
+        return self.model_copy(update={"number": targets})
 
 
 MODES: dict[str, type[Clustering]] = {

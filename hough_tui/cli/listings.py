@@ -87,10 +87,14 @@ def validate(
         else:
             parts = {
                 "scenario": found.scenarios,
+                "scene": found.scenes,
                 "initiator": found.initiators,
+                "clustering": found.clusterings,
                 "experiment": found.experiments,
             }
-            counts = ", ".join(counted(len(listed), part) for part, listed in parts.items())
+            always = {"scenario", "initiator", "experiment"} if found.scenarios else {"scene", "experiment"}
+            told = [(part, len(listed)) for part, listed in parts.items() if listed or part in always]
+            counts = ", ".join(counted(number, part) for part, number in told)
             print(f"{name}: valid: {counts}")
     if wrong:
         raise RequestError("\n".join(wrong))

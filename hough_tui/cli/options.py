@@ -16,7 +16,16 @@ class Metric(StrEnum):
     FALSE = "false_track_ratio"
     FALSE_TRACKS = "false_tracks_per_trial"
     DUPLICATES = "duplicates_per_trial"
+    EXACT = "count_exact_rate"
+    EXCESS = "excess_per_trial"
+    CENTROID = "centroid_rmse"
     SECONDS = "seconds_per_trial"
+
+
+MetricOption = Annotated[
+    Metric | None,
+    typer.Option(help="What --plot shows; by default success, of clusterings the exact counts."),
+]
 
 
 SetArgument = Annotated[str, typer.Argument(metavar="SET", help="A YAML file, or the name of a bundled set.")]

@@ -11,6 +11,7 @@ import typer
 from hough_tui.cli.options import (
     JsonOption,
     Metric,
+    MetricOption,
     SeedOption,
     TrialsOption,
     WorkersOption,
@@ -33,7 +34,7 @@ def batch(
         Path | None, typer.Option(metavar="FILE", help="Write the rows as CSV, too; - prints them.")
     ] = None,
     plot: Annotated[bool, typer.Option("--plot", help="Draw a chart of the rates below the tables.")] = False,
-    metric: Annotated[Metric, typer.Option(help="What --plot shows.")] = Metric.SUCCESS,
+    metric: MetricOption = None,
     keep: Annotated[
         bool, typer.Option("--keep/--no-keep", help="Keep the run below the data directory.")
     ] = True,
@@ -67,7 +68,7 @@ def batch(
     elif str(csv) == "-":
         sys.stdout.write(csv_text(run.document["rows"]))
     else:
-        print_rates(run.document["rows"], metric if plot else None)
+        print_rates(run.document["rows"], metric, plot)
     if csv is not None and str(csv) != "-":
         replace_file(csv, csv_text(run.document["rows"]))
     seconds = job.seconds
@@ -92,20 +93,23 @@ def keep_run(run: Any) -> int:
     return 0
 
 
-def print_rates(rows: list[dict[str, Any]], metric: Metric | None) -> None:
-    """Print the tables of rows, and a chart of each experiment where a metric is given."""
+def print_rates(rows: list[dict[str, Any]], metric: Metric | None, with_charts: bool) -> None:
+    """Print the tables of rows and, if so asked, a chart of each experiment."""
     from itertools import groupby
 
     from hough_tui.reports.charts import rate_chart
+    from hough_tui.reports.metrics import leading_metric
     from hough_tui.reports.tables import rate_tables
 
     width = output_width()
     print_renderables(*rate_tables(rows, width))
-    if metric is None:
+    if not with_charts:
         return
     for (_, name), group in groupby(rows, key=lambda row: (row["set"], row["experiment"])):
         print(f"\n{name}")
-        print(rate_chart(list(group), metric.value, min(width, 120), 22, is_coloured()))
+        found = list(group)
+        chosen = metric.value if metric is not None else leading_metric(found[0])
+        print(rate_chart(found, chosen, min(width, 120), 22, is_coloured()))
 
 
 @reported
@@ -167,7 +171,7 @@ def show_result(
     name: Annotated[str, typer.Argument(metavar="RUN", help="Its name, or a part of it that fits no other.")],
     as_json: JsonOption = False,
     plot: Annotated[bool, typer.Option("--plot", help="Draw a chart of the rates below the tables.")] = False,
-    metric: Annotated[Metric, typer.Option(help="What --plot shows.")] = Metric.SUCCESS,
+    metric: MetricOption = None,
 ) -> None:
     """Show the rates of a run that was kept."""
     refuse(as_json and plot, "--json prints one document and nothing else: leave out --plot")
@@ -178,4 +182,4 @@ def show_result(
     if as_json:
         sys.stdout.write(json_text(document))
     else:
-        print_rates(document["rows"], metric if plot else None)
+        print_rates(document["rows"], metric, plot)

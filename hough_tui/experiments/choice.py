@@ -21,6 +21,8 @@ def chosen_scenario(given: ScenarioSet, name: str | None) -> Scenario:
         Where there is none of that name, or several and no name is given.
     """
     names = [scenario.name for scenario in given.scenarios]
+    if not names:
+        raise RequestError(f"{given.name} has scenes alone, and no scenario")
     if name is None:
         if len(names) > 1:
             raise RequestError(f"{given.name} has {len(names)} scenarios; choose one: {', '.join(names)}")

@@ -1,20 +1,21 @@
-"""Per-trial columns: what each trial of a cell gave."""
+"""Per-trial columns of initiation: what each trial of a cell gave."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.scoring import Scores
 from algorithms.tracks import TrackChunk
+from hough_tui.experiments.work import Columns
 
 
 @dataclass(frozen=True, slots=True)
-class TrialColumns:
+class TrialColumns(Columns):
     """The columns of one cell, one row a trial.
 
     Attributes
@@ -78,21 +79,13 @@ class TrialColumns:
         if control_found is not None:
             self.control_found[rows] = control_found
 
-    def part(self, rows: slice | NDArray[np.bool_]) -> TrialColumns:
-        """Return the columns of some of the trials."""
-        values = {
-            name: column[rows] if len(column) == len(self.trial) else column
-            for name, column in self.arrays().items()
-        }
-        return TrialColumns.of(values)
-
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Return the columns by name, those of the effort as `effort.NAME`."""
         plain = {name: getattr(self, name) for name in PLAIN}
         return plain | {f"{EFFORT}{name}": column for name, column in tuple(self.effort.items())}
 
     @classmethod
-    def of(cls, arrays: Mapping[str, NDArray[Any]]) -> TrialColumns:
+    def of(cls, arrays: Mapping[str, NDArray[Any]]) -> Self:
         """Return the columns that `arrays` gave."""
         effort = {
             name.removeprefix(EFFORT): column for name, column in arrays.items() if name.startswith(EFFORT)

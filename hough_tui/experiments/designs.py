@@ -13,9 +13,11 @@ from algorithms.errors import RequestError
 from algorithms.parameters import validated
 from algorithms.quantisation.question import Clutter, ClutterSource, Question, TargetLine
 from hough_tui.experiments.choice import changed, chosen_scenario
+from scenarios.clutter import ExactClutter
 from scenarios.files import load_set
-from scenarios.model import ExactClutter, Scenario, Target
+from scenarios.model import Scenario
 from scenarios.sensors import PolarSensor
+from scenarios.targets import Target
 
 PLACEMENTS = 40
 """Places and headings of a target of which only the speed is known, in the trials of a check."""

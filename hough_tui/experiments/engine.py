@@ -12,24 +12,19 @@ import multiprocessing
 import os
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures import wait as wait_for
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.errors import WorkFailedError
-from algorithms.initiators.base import ChunkInitiator
-from algorithms.plots import PlotChunk
-from algorithms.tracks import TrackChunk
-from hough_tui.experiments.chunks import run_chunk
-from hough_tui.experiments.columns import TrialColumns
-from hough_tui.experiments.plain import begin_worker, initiate_trials
-from hough_tui.experiments.plan import Cell, Plan, SharedDraws, SharedTracks
-from hough_tui.experiments.tallies import Row, tally
-from scenarios.world import World
+from hough_tui.experiments.plain import begin_worker
+from hough_tui.experiments.plan import Plan
+from hough_tui.experiments.work import Cell, Columns, Row
 
 PART_SECONDS = 0.05
 """About how long a worker goes on before it looks whether the run is cancelled; one trial may last longer."""
@@ -68,12 +63,12 @@ class Job:
     def __init__(self, plan: Plan, workers: int | None = None) -> None:
         self.plan = plan
         self.workers = workers or available_workers()
-        self.columns = tuple(_columns(cell) for cell in plan.cells)
+        self.columns = tuple(cell.empty_columns() for cell in plan.cells)
         totals = np.array([cell.experiment.trials for cell in plan.cells], dtype=np.int64)
         self.progress = Progress(np.zeros_like(totals), totals)
         self._finished = tuple(np.zeros(cell.experiment.trials, np.bool_) for cell in plan.cells)
         self._seconds = np.zeros(len(plan.cells))
-        self._worlds: dict[int, World] = {}
+        self._prepared: dict[int, Any] = {}
         self._ended: float | None = None
         self._cancelled = threading.Event()
         self._lock = threading.Lock()
@@ -118,7 +113,7 @@ class Job:
         """Whether every trial of every cell is done."""
         return bool((self.progress.done == self.progress.total).all())
 
-    def finished(self) -> Iterator[tuple[Cell, TrialColumns, float]]:
+    def finished(self) -> Iterator[tuple[Cell, Columns, float]]:
         """Yield the cells that have finished trials, with the columns of these and their seconds."""
         for cell, columns, finished, seconds in zip(
             self.plan.cells, self.columns, self._finished, self._seconds, strict=True
@@ -132,7 +127,7 @@ class Job:
 
     def rows(self) -> list[Row]:
         """Return the rows of the cells that have finished trials, over these trials."""
-        return [tally(*found) for found in self.finished()]
+        return [cell.tally(columns, seconds) for cell, columns, seconds in self.finished()]
 
     def _work(self) -> None:
         try:
@@ -152,7 +147,7 @@ class Job:
         """Load, or compile, the kernels that the plan needs, so that no trial is charged for it."""
         while self._cold and not self._cancelled.is_set():
             shared = self._cold.pop()
-            for _ in run_chunk(self.plan, shared, World.of(shared.scenario), 0, 1, self._plain):
+            for _ in shared.run(shared.prepared(), 0, 1, self._plain):
                 continue
 
     def _run(self, index: int, first: int, trials: int) -> None:
@@ -171,9 +166,11 @@ class Job:
     def _run_part(self, index: int, first: int, trials: int) -> None:
         shared = self.plan.draws[index]
         with self._lock:
-            world = self._worlds.setdefault(index, World.of(shared.scenario))
-        for done in run_chunk(self.plan, shared, world, first, trials, self._plain):
-            self.columns[done.cell].fill(first, done.tracks, done.scores, done.control_found)
+            prepared = self._prepared.get(index)
+            if prepared is None:
+                prepared = self._prepared[index] = shared.prepared()
+        for done in shared.run(prepared, first, trials, self._plain):
+            done.fill(self.columns[done.cell], first)
             with self._lock:
                 self._seconds[done.cell] += done.seconds
                 self._finished[done.cell][first : first + trials] = True
@@ -181,25 +178,18 @@ class Job:
             if self._cancelled.is_set():
                 return
 
-    def _plain(self, shared: SharedDraws, run: SharedTracks, chunk: PlotChunk) -> tuple[TrackChunk, float]:
+    def _plain(self, what: str, function: Callable[..., Any], *given: Any) -> Any:
+        """Return what a function in plain Python gives in a worker process."""
         assert self._processes is not None
-        given = (run.entry.initiator, run.parameters, shared.scenario.context, chunk)
         try:
-            return self._processes.submit(initiate_trials, *given).result()
+            return self._processes.submit(function, *given).result()
         except BrokenExecutor:
-            raise WorkFailedError(
-                f"initiator {run.entry.initiator}: its worker process died; mend the plug-in"
-            ) from None
+            raise WorkFailedError(f"{what}: its worker process died; mend the plug-in") from None
 
 
 def available_workers() -> int:
     """Return how many processors this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _columns(cell: Cell) -> TrialColumns:
-    experiment = cell.experiment
-    return TrialColumns.empty(experiment.trials, len(cell.scenario.targets), control=experiment.control)
 
 
 def _chunks(plan: Plan) -> Iterator[tuple[int, int, int]]:
@@ -210,8 +200,7 @@ def _chunks(plan: Plan) -> Iterator[tuple[int, int, int]]:
 
 
 def _processes(plan: Plan, workers: int) -> ProcessPoolExecutor | None:
-    runs = (run for shared in plan.draws for run in shared.runs)
-    if all(isinstance(run.entry.algorithm, ChunkInitiator) for run in runs):
+    if not any(shared.needs_processes for shared in plan.draws):
         return None
     # A forked child would inherit the state of threads that it does not have.
     spawned = multiprocessing.get_context("spawn")

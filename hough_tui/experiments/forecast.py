@@ -18,7 +18,8 @@ from algorithms.quantisation.question import Question
 from algorithms.quantisation.spread import VoteDistribution
 from hough_tui.experiments.adoption import LEAST_VOTES
 from hough_tui.experiments.designs import Demands, moving_targets, question_of, taken_for
-from scenarios.model import InitiatorEntry, Scenario
+from scenarios.entries import InitiatorEntry
+from scenarios.model import Scenario
 
 REACH = 4.0
 """Standard deviations beyond the spread by the extent that a picture of the votes goes."""

@@ -15,9 +15,11 @@ from algorithms.scoring import score
 from algorithms.space.planes import PlaneVotes
 from algorithms.tracks import Tracks
 from hough_tui.experiments.plain import gathered
-from scenarios.model import InitiatorEntry, MatchCriterion, Scenario
-from scenarios.simulate import Draw, draw, true_paths, truth
-from scenarios.world import World
+from hough_tui.experiments.plot_sources import Stage, plots_of
+from scenarios.entries import InitiatorEntry
+from scenarios.experiments import MatchCriterion
+from scenarios.model import Scenario
+from scenarios.simulate import Draw, true_paths, truth
 
 MOST_TRACKS = 500
 """How many tracks of a trial are looked at; nobody looks at more, and each must find its plots."""
@@ -81,9 +83,14 @@ class TrialLook:
     seconds: float
 
 
-def picture(scenario: Scenario, seed: int, trial: int) -> Picture:
-    """Return a draw of a scenario."""
-    return Picture(scenario, seed, trial, draw(World.of(scenario), seed, trial))
+def picture(scenario: Scenario, seed: int, trial: int, stage: Stage = None) -> Picture:
+    """Return a draw of a scenario.
+
+    Parameters
+    ----------
+    stage : how points become plots, of a scenario whose sensors give points; None: every point is a plot
+    """
+    return Picture(scenario, seed, trial, plots_of(scenario, seed, trial, stage))
 
 
 def look(

@@ -1,4 +1,4 @@
-"""The plan of a run: which cells there are, and how they share draws and tracks."""
+"""The plan of a run: which cells there are, and how they share draws and what is found in them."""
 
 from __future__ import annotations
 
@@ -6,73 +6,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from algorithms.errors import RequestError
-from algorithms.parameters import Parameters, unknown
-from scenarios.model import Experiment, InitiatorEntry, MatchCriterion, Scenario, ScenarioSet
+from algorithms.parameters import unknown
+from hough_tui.experiments.chunks import InitiationCell
+from hough_tui.experiments.scene_chunks import ClusteringCell
+from hough_tui.experiments.work import Cell, SharedDraws, SharedRun
+from scenarios.experiments import ClusteringExperiment, Experiment, InitiationExperiment
+from scenarios.model import ScenarioSet
 from scenarios.sweeps import points
 
-LARGEST_CHUNK = 200
-"""Trials of the largest chunk."""
-
-PLOTS_A_CHUNK = 60_000
-"""Plots that a chunk is expected to hold: some twenty milliseconds of work, not to be interrupted."""
-
+KINDS: dict[type[Experiment], type[Cell]] = {
+    InitiationExperiment: InitiationCell,
+    ClusteringExperiment: ClusteringCell,
+}
+"""The cells of each kind of experiment."""
 
 MOST_BYTES = 4 * 2**30
 """The most memory that the per-trial columns may take."""
-
-
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """One row of the result: an initiator on a scenario, both with the swept values put in.
-
-    Attributes
-    ----------
-    set_name, experiment : where it comes from
-    scenario, entry, parameters : what runs; the parameters are resolved
-    swept : the swept values by their keys as they were written
-    """
-
-    set_name: str
-    experiment: Experiment
-    scenario: Scenario
-    entry: InitiatorEntry
-    parameters: Parameters
-    swept: dict[str, int | float]
-
-    @property
-    def criterion(self) -> MatchCriterion:
-        """When a track matches a target."""
-        return self.experiment.criterion
-
-
-@dataclass(frozen=True, slots=True)
-class SharedTracks:
-    """The cells that score the same tracks: one initiator with one set of parameters."""
-
-    entry: InitiatorEntry
-    parameters: Parameters
-    cells: tuple[int, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class SharedDraws:
-    """The cells that see the same draws: one scenario and one seed.
-
-    Attributes
-    ----------
-    scenario, seed, trials : which draws
-    runs : what runs on them
-    """
-
-    scenario: Scenario
-    seed: int
-    trials: int
-    runs: tuple[SharedTracks, ...]
-
-    @property
-    def chunk(self) -> int:
-        """Trials of a chunk; it depends on the scenario alone, never on the number of workers."""
-        return max(1, min(LARGEST_CHUNK, int(PLOTS_A_CHUNK / max(1.0, self.scenario.expected_plots))))
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +83,7 @@ def plan_run(
         ]
         changed.append(given.model_copy(update={"experiments": chosen}))
     cells = tuple(
-        Cell(given.name, experiment, point.scenario, point.entry, point.parameters, point.swept)
+        KINDS[type(experiment)](given.name, experiment, point)
         for given in changed
         for experiment in given.experiments
         for point in points(given, experiment)
@@ -144,7 +93,7 @@ def plan_run(
         raise RequestError(
             f"{names}: the set has no experiments, so there is nothing to run; give one under `experiments`"
         )
-    size = sum(cell.experiment.trials * (20 + 10 * len(cell.scenario.targets)) for cell in cells)
+    size = sum(cell.experiment.trials * cell.bytes_a_trial for cell in cells)
     if size > MOST_BYTES:
         raise RequestError(
             f"the trials of {len(cells)} cells would need {size / 2**30:,.1f} GiB; "
@@ -154,17 +103,16 @@ def plan_run(
 
 
 def _shared(cells: Sequence[Cell]) -> list[SharedDraws]:
-    """Return the work of cells: equal draws are made once, equal tracks are found once."""
-    draws: dict[tuple[str, int, int], dict[tuple[str, str], list[int]]] = {}
+    """Return the work of cells: equal draws are made once, equal results are found once."""
+    draws: dict[tuple[str, int, int], dict[str, list[int]]] = {}
     for index, cell in enumerate(cells):
-        drawn = (cell.scenario.model_dump_json(), cell.experiment.seed, cell.experiment.trials)
-        tracks = (cell.entry.initiator, cell.parameters.model_dump_json())
-        draws.setdefault(drawn, {}).setdefault(tracks, []).append(index)
+        drawn = (cell.draws_key, cell.experiment.seed, cell.experiment.trials)
+        draws.setdefault(drawn, {}).setdefault(cell.run_key, []).append(index)
     found = []
-    for (_, seed, trials), runs in draws.items():
+    for runs in draws.values():
         shared = tuple(
-            SharedTracks(cells[indices[0]].entry, cells[indices[0]].parameters, tuple(indices))
+            SharedRun(cells[indices[0]].entry, cells[indices[0]].parameters, tuple(indices))
             for indices in runs.values()
         )
-        found.append(SharedDraws(cells[shared[0].cells[0]].scenario, seed, trials, shared))
+        found.append(type(cells[shared[0].cells[0]]).shared(cells, shared))
     return found

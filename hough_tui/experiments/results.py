@@ -7,7 +7,6 @@ from typing import Any
 from hough_tui import __version__
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.store import Run
-from hough_tui.experiments.tallies import tally
 
 
 def result(job: Job) -> Run:
@@ -23,6 +22,6 @@ def result(job: Job) -> Run:
         "seed": seeds.pop() if len(seeds) == 1 else None,
         "version": __version__,
         "complete": job.is_complete,
-        "rows": [tally(*cell) for cell in found],
+        "rows": [cell.tally(columns, seconds) for cell, columns, seconds in found],
     }
     return Run(job.plan.sets, document, tuple(columns.arrays() for _, columns, _ in found))

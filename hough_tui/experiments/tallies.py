@@ -1,17 +1,18 @@
-"""Tallies: the per-trial columns of a cell into one row of rates with intervals."""
+"""Tallies of initiation: the per-trial columns of a cell into one row of rates with intervals."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.intervals import mean_interval
 from hough_tui.experiments.columns import TrialColumns
-from hough_tui.experiments.plan import Cell
+from hough_tui.experiments.work import Row
 
-Row = dict[str, Any]
+if TYPE_CHECKING:
+    from hough_tui.experiments.chunks import InitiationCell
 
 
 def false_ratio(columns: TrialColumns) -> NDArray[np.float64]:
@@ -20,7 +21,7 @@ def false_ratio(columns: TrialColumns) -> NDArray[np.float64]:
     return ratio
 
 
-def tally(cell: Cell, columns: TrialColumns, seconds: float) -> Row:
+def tally(cell: InitiationCell, columns: TrialColumns, seconds: float) -> Row:
     """Return the row of a cell: the document that tables, charts and files are made of.
 
     Parameters
@@ -34,14 +35,7 @@ def tally(cell: Cell, columns: TrialColumns, seconds: float) -> Row:
     control = _rate(columns.control_found)
     ratio = false_ratio(columns)
     return {
-        "set": cell.set_name,
-        "experiment": cell.experiment.name,
-        "scenario": cell.scenario.name,
-        "initiator": cell.entry.name,
-        "swept": dict(cell.swept),
-        "trials": trials,
-        "seed": cell.experiment.seed,
-        "unit": cell.scenario.unit.value,
+        **cell.heading(trials),
         "targets": [target.name for target in cell.scenario.targets],
         "success_rate": success[0],
         "success_ci95": success[1],

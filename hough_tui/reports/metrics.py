@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 
@@ -43,6 +44,13 @@ KNOWN = {
     "rho_rmse": Metric("ρ RMSE"),
     "theta_mse": Metric("θ MSE", "rad²"),
     "rho_mse": Metric("ρ MSE"),
+    "count_exact_rate": Metric("exact counts", "%", True, "count_exact_ci95"),
+    "too_few_rate": Metric("too few clusters", "%", True),
+    "too_many_rate": Metric("too many clusters", "%", True),
+    "excess_per_trial": Metric("excess clusters a trial"),
+    "clusters_per_trial": Metric("clusters a trial"),
+    "centroid_rmse": Metric("centroid RMSE", "cells", interval="centroid_rmse_ci95"),
+    "centroid_mse": Metric("centroid MSE", "cells²"),
     "seconds_per_trial": Metric("time a trial", "s"),
 }
 
@@ -59,6 +67,16 @@ def metric(name: str) -> Metric:
     return Metric(words)
 
 
+PARTS = ("scenario", "initiator", "scene", "clustering")
+"""What rows are told apart by, and swept fields begin with."""
+
+
 def field_name(key: str) -> str:
     """Return a swept key without the part that says where its field belongs."""
-    return key.removeprefix("scenario.").removeprefix("initiator.")
+    part, _, rest = key.partition(".")
+    return rest if rest and part in PARTS else key
+
+
+def leading_metric(row: Mapping[str, object]) -> str:
+    """Return what a chart of rows shows where nothing else is asked for."""
+    return "count_exact_rate" if "scene" in row else "success_rate"

@@ -2,30 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from hough_tui.reports.layout import Column, Sheet, broken, repeats
-from hough_tui.reports.metrics import field_name
+from hough_tui.reports.counts import count_sheet
+from hough_tui.reports.layout import Column, Sheet, broken
 from hough_tui.reports.numerals import (
-    NONE,
     aligned,
     as_given,
-    durations,
-    intervals,
     number,
-    pair,
     percent,
     significant,
 )
-
-Row = Mapping[str, Any]
-Texts = Callable[[Sequence[Row], str], tuple[str, ...]]
+from hough_tui.reports.row_columns import (
+    SHORT_KEY,
+    Row,
+    interval,
+    measured,
+    name_columns,
+    percents,
+    swept_columns,
+    time_column,
+    trial_words,
+)
 
 HIGH_CONTROL = 0.05
 """From here on clutter alone is no small part of a success."""
-
-SHORT_KEY = 8
 
 MANY_TARGETS, UNLIKE = 3, 0.1
 """Where so many targets differ by more than this, their mean says little: success by target goes first."""
@@ -45,7 +47,20 @@ def rate_sheets(rows: Sequence[Row]) -> list[Sheet]:
     for row in rows:
         key = (str(row.get("set") or ""), str(row.get("experiment") or ""))
         experiments.setdefault(key, []).append(row)
-    return [_sheet(" · ".join(filter(None, key)), part) for key, part in experiments.items()]
+    return [_fitting_sheet(" · ".join(filter(None, key)), part) for key, part in experiments.items()]
+
+
+def _fitting_sheet(title: str, rows: Sequence[Row]) -> Sheet:
+    """Return the sheet of rows of initiation, of clustering, or, of several experiments, of both."""
+    of_scenes = [row for row in rows if "scene" in row]
+    if not of_scenes:
+        return _sheet(title, rows)
+    if len(of_scenes) == len(rows):
+        return count_sheet(title, rows)
+    first, second = _sheet(title, rows), count_sheet(title, rows)
+    known = {(column.name, column.called) for column in first.columns}
+    further = tuple(column for column in second.columns if (column.name, column.called) not in known)
+    return Sheet(title, first.columns + further, first.notes + second.notes, first.warnings + second.warnings)
 
 
 def criterion_words(criterion: Mapping[str, Any] | None, unit: str) -> str:
@@ -80,57 +95,40 @@ def criterion_words(criterion: Mapping[str, Any] | None, unit: str) -> str:
 def _sheet(title: str, rows: Sequence[Row]) -> Sheet:
     units = list(dict.fromkeys(str(row.get("unit") or "") for row in rows))
     unit = units[0] if len(units) == 1 else ""
-    columns = [*_names(rows), *_swept(rows), *_success(rows), *_false(rows), *_further(rows, units)]
+    columns = [
+        *name_columns(rows, "scenario", "clustering", "initiator"),
+        *swept_columns(rows),
+        *_success(rows),
+        *_false(rows),
+        *_further(rows, units),
+    ]
     return Sheet(title, tuple(columns), _notes(rows, unit), _warnings(rows))
 
 
-def _names(rows: Sequence[Row]) -> list[Column]:
-    scenarios = tuple(str(row.get("scenario") or NONE) for row in rows)
-    initiators = tuple(str(row.get("initiator") or NONE) for row in rows)
-    both = [" ".join(names) for names in zip(scenarios, initiators, strict=True)]
-    columns = [Column("initiator", initiators, prose=True, styles=repeats(both))]
-    if len(set(scenarios)) > 1:
-        columns.insert(0, Column("scenario", scenarios, prose=True, styles=repeats(scenarios)))
-    return columns
-
-
-def _swept(rows: Sequence[Row]) -> list[Column]:
-    keys = list(dict.fromkeys(key for row in rows for key in row.get("swept") or {}))
-    short = [field_name(key) for key in keys]
-    names = short if len(set(short)) == len(keys) else keys
-    return [
-        Column(
-            broken(name, SHORT_KEY),
-            aligned([as_given((row.get("swept") or {}).get(key)) for row in rows]),
-        )
-        for key, name in zip(keys, names, strict=True)
-    ]
-
-
 def _success(rows: Sequence[Row]) -> list[Column]:
-    columns = [Column("success\n%", _percents(rows, "success_rate"))]
-    columns += _interval(rows, "success_ci95", rank=20, called="the interval of success")
-    columns += _measured(rows, "control\n%", "success_control", _percents, rank=10, called="control")
+    columns = [Column("success\n%", percents(rows, "success_rate"))]
+    columns += interval(rows, "success_ci95", rank=20, called="the interval of success")
+    columns += measured(rows, "control\n%", "success_control", percents, rank=10, called="control")
     return columns
 
 
 def _false(rows: Sequence[Row]) -> list[Column]:
-    columns = [Column("false\n%", _percents(rows, "false_track_ratio"))]
-    columns += _interval(rows, "false_track_ratio_ci95", rank=75, called="the interval of false %")
-    columns += _measured(
+    columns = [Column("false\n%", percents(rows, "false_track_ratio"))]
+    columns += interval(rows, "false_track_ratio_ci95", rank=75, called="the interval of false %")
+    columns += measured(
         rows, "false\n/trial", "false_tracks_per_trial", rank=30, called="false tracks a trial"
     )
-    columns += _measured(rows, "duplic.\n/trial", "duplicates_per_trial", rank=40, called="duplicates")
-    columns += _measured(rows, "tracks\n/trial", "tracks_per_trial", rank=70, called="tracks a trial")
-    columns += _measured(rows, "pure\n%", "pure_track_ratio", _percents, rank=60, called="pure tracks")
+    columns += measured(rows, "duplic.\n/trial", "duplicates_per_trial", rank=40, called="duplicates")
+    columns += measured(rows, "tracks\n/trial", "tracks_per_trial", rank=70, called="tracks a trial")
+    columns += measured(rows, "pure\n%", "pure_track_ratio", percents, rank=60, called="pure tracks")
     return columns
 
 
 def _further(rows: Sequence[Row], units: Sequence[str]) -> list[Column]:
-    columns = _measured(rows, "θ RMSE\n°", "theta_rmse_deg", rank=50, called="θ RMSE")
+    columns = measured(rows, "θ RMSE\n°", "theta_rmse_deg", rank=50, called="θ RMSE")
     if len(units) == 1:
         heading = f"ρ RMSE\n{units[0]}" if units[0] else "ρ RMSE"
-        columns += _measured(rows, heading, "rho_rmse", rank=60, called="ρ RMSE")
+        columns += measured(rows, heading, "rho_rmse", rank=60, called="ρ RMSE")
     elif any(number(row.get("rho_rmse")) is not None for row in rows):
         errors = aligned([significant(number(row.get("rho_rmse"))) for row in rows])
         room = max(len(str(row.get("unit") or "")) for row in rows)
@@ -138,10 +136,7 @@ def _further(rows: Sequence[Row], units: Sequence[str]) -> list[Column]:
             f"{error} {row.get('unit') or '':<{room}}" for error, row in zip(errors, rows, strict=True)
         )
         columns.append(Column("ρ RMSE", cells, rank=60))
-    seconds = [number(row.get("seconds_per_trial")) for row in rows]
-    if any(value is not None for value in seconds):
-        unit, cells = durations(seconds)
-        columns.append(Column(f"{unit}\n/trial", cells, rank=65, called="time a trial"))
+    columns += time_column(rows)
     empty = [_share_without_track(row) for row in rows]
     if any(empty):
         cells = aligned([percent(value) for value in empty])
@@ -174,37 +169,12 @@ def _target_name(rows: Sequence[Row], target: int) -> str:
     return str(name or f"target {target + 1}")
 
 
-def _percents(rows: Sequence[Row], key: str) -> tuple[str, ...]:
-    return aligned([percent(number(row.get(key))) for row in rows])
-
-
-def _plain(rows: Sequence[Row], key: str) -> tuple[str, ...]:
-    return aligned([significant(number(row.get(key))) for row in rows])
-
-
-def _measured(
-    rows: Sequence[Row], heading: str, key: str, texts: Texts = _plain, *, rank: int, called: str = ""
-) -> list[Column]:
-    """Return a column, or none where no row has a value for it."""
-    if all(number(row.get(key)) is None for row in rows):
-        return []
-    return [Column(heading, texts(rows, key), rank=rank, called=called)]
-
-
-def _interval(rows: Sequence[Row], key: str, *, rank: int, called: str) -> list[Column]:
-    pairs = [pair(row.get(key)) for row in rows]
-    if all(ends == (None, None) for ends in pairs):
-        return []
-    cells = intervals([(percent(low), percent(high)) for low, high in pairs])
-    return [Column("95 %\ninterval", cells, rank=rank, quiet=True, called=called)]
-
-
 def _notes(rows: Sequence[Row], unit: str) -> tuple[str, ...]:
     scenarios = list(dict.fromkeys(str(row.get("scenario") or "") for row in rows))
     words = criterion_words(rows[0].get("criterion"), unit)
     if len(scenarios) == 1 and scenarios[0]:
         words = f"Scenario {scenarios[0]}. {words}".rstrip()
-    return tuple(filter(None, (words, _trials(rows), *_efforts(rows))))
+    return tuple(filter(None, (words, trial_words(rows), *_efforts(rows))))
 
 
 def _efforts(rows: Sequence[Row]) -> Iterator[str]:
@@ -221,18 +191,6 @@ def _efforts(rows: Sequence[Row]) -> Iterator[str]:
             for name, found in counts.items()
         ]
         yield f"{initiator}, on the mean of a trial: {', '.join(parts)}."
-
-
-def _trials(rows: Sequence[Row]) -> str:
-    counts = [int(row["trials"]) for row in rows if number(row.get("trials")) is not None]
-    seeds = list(dict.fromkeys(as_given(row.get("seed")) for row in rows if row.get("seed") is not None))
-    parts = []
-    if counts:
-        few, many = min(counts), max(counts)
-        parts.append(f"{many:,} trials a row" if few == many else f"{few:,} to {many:,} trials a row")
-    if seeds:
-        parts.append(f"seed {seeds[0]}" if len(seeds) == 1 else f"seeds {', '.join(seeds)}")
-    return f"{', '.join(parts)}." if parts else ""
 
 
 def _share_without_track(row: Row) -> float:

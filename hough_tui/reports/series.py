@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from hough_tui.reports.metrics import field_name
+from hough_tui.reports.metrics import PARTS, field_name
 from hough_tui.reports.metrics import metric as metric_called
 from hough_tui.reports.numerals import Pair, as_given, number, pair
 
@@ -130,8 +130,7 @@ def _labels(rows: Sequence[Row], key: str) -> list[str]:
     """Return for each row what tells its series from the others."""
     parts = [
         {
-            "scenario": str(row.get("scenario") or ""),
-            "initiator": str(row.get("initiator") or ""),
+            **{part: str(row.get(part) or "") for part in PARTS},
             **{
                 name: f"{field_name(name)} {as_given(value)}"
                 for name, value in (row.get("swept") or {}).items()

@@ -7,8 +7,11 @@ from algorithms.errors import RequestError
 from algorithms.initiators.base import ChunkInitiator
 from algorithms.initiators.registry import initiators
 from algorithms.scoring import Criterion, score
-from scenarios.model import CartesianSensor, PoissonClutter, Region, Scenario, Target
+from scenarios.clutter import PoissonClutter, Region
+from scenarios.model import Scenario
+from scenarios.sensors import CartesianSensor
 from scenarios.simulate import draw, truth
+from scenarios.targets import Target
 from scenarios.world import World
 
 

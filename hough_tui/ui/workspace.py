@@ -177,8 +177,9 @@ class Workspace:
     def _rename(self, data: dict[str, Any], part: str, index: int, name: Any) -> None:
         """Put a new name where experiments refer to the old one, and keep what the old one said."""
         old = self.value((part, index)).name
-        if part == "initiators":
-            data[part][index].setdefault("initiator", self.given.initiators[index].initiator)
+        which = {"initiators": "initiator", "clusterings": "mode"}.get(part)
+        if which is not None:
+            data[part][index].setdefault(which, getattr(self.value((part, index)), which))
         for experiment in data.get("experiments", ()):
             if part in experiment and experiment[part] is not None:
                 experiment[part] = [name if found == old else found for found in experiment[part]]

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from hough_tui.cli import main
-from scenarios.range_doppler import SCENES, draw_scene
+from scenarios.files import load_set
+from scenarios.range_doppler import draw_scene
 
 EXTENTS = ("--range-extent", 16, "--doppler-extent", 12)
 SQUARE = ((0, 0), (0, 2), (2, 0), (2, 2))
@@ -170,7 +171,7 @@ def test_a_scan_is_shown_alone(cli, points):
 
 
 def test_many_scans_are_clustered_as_each_alone(cli, tmp_path):
-    drawn = draw_scene(SCENES["close"], 3, 0, 5).points
+    drawn = draw_scene(load_set("range-doppler").scene("close"), 3, 0, 5).points
     scan = np.repeat(np.arange(5), np.diff(drawn.offsets))
     rows = np.stack([scan, drawn.range, drawn.doppler, drawn.amplitude], axis=1)
     order = np.random.default_rng(1).permutation(len(rows))

@@ -186,19 +186,31 @@ def test_the_bundled_sets_are_as_the_schema_says(schema, name):
     path = bundled_paths()[name]
     data = read(path.read_text(encoding="utf-8"), str(path)).data
     assert is_valid(data, schema, schema)
-    for spoil in (
+    spoils = [
         lambda wrong: wrong.pop("name"),
         lambda wrong: wrong.update(schema=2),
         lambda wrong: wrong.update(extra=1),
-        lambda wrong: wrong.update(scenarios=[]),
-        lambda wrong: wrong["scenarios"][0].update(scans=0),
-        lambda wrong: wrong["scenarios"][0].update(scans="5"),
-        lambda wrong: wrong["scenarios"][0].update(unit="feet"),
-        lambda wrong: wrong["scenarios"][0]["sensor"].update(detection_probability=1.5),
-        lambda wrong: wrong["scenarios"][0]["targets"][0].update(position=[1]),
-        lambda wrong: wrong["initiators"][0].update(fraction=-1),
-        lambda wrong: wrong["experiments"][0].pop("criterion"),
-    ):
+        lambda wrong: wrong.update(scenarios=[], scenes=[]),
+    ]
+    if "scenarios" in data:
+        spoils += [
+            lambda wrong: wrong["scenarios"][0].update(scans=0),
+            lambda wrong: wrong["scenarios"][0].update(scans="5"),
+            lambda wrong: wrong["scenarios"][0].update(unit="feet"),
+            lambda wrong: wrong["scenarios"][0]["sensor"].update(detection_probability=1.5),
+            lambda wrong: wrong["scenarios"][0]["targets"][0].update(position=[1]),
+            lambda wrong: wrong["initiators"][0].update(fraction=-1),
+            lambda wrong: wrong["experiments"][-1].pop("criterion"),
+        ]
+    if "scenes" in data:
+        spoils += [
+            lambda wrong: wrong["scenes"][0].update(noise=-1),
+            lambda wrong: wrong["scenes"][0]["targets"][0].update(points=0),
+            lambda wrong: wrong["clusterings"][0].update(eps=1),
+            lambda wrong: wrong["clusterings"][0].update(name="other"),
+            lambda wrong: wrong["experiments"][0].pop("kind"),
+        ]
+    for spoil in spoils:
         wrong = copy.deepcopy(data)
         spoil(wrong)
         assert not is_valid(wrong, schema, schema)

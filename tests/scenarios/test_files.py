@@ -11,6 +11,7 @@ from algorithms.errors import RequestError
 from algorithms.initiators.registry import initiators
 from scenarios import files
 from scenarios.bundled import bundled_paths
+from scenarios.experiments import LARGEST_SEED
 from scenarios.files import (
     LARGEST_FILE,
     bundled_sets,
@@ -22,7 +23,7 @@ from scenarios.files import (
     set_data,
 )
 from scenarios.marked_yaml import read
-from scenarios.model import LARGEST_SEED, ScenarioSet
+from scenarios.model import ScenarioSet
 
 TEXT = """\
 # What this set is for.

@@ -10,19 +10,11 @@ from algorithms.errors import RequestError
 from algorithms.initiators.registry import initiators
 from algorithms.parameters import numeric_paths, validated
 from algorithms.scoring import Criterion
-from scenarios.model import (
-    LARGEST_SEED,
-    MOST_PLOTS,
-    MOST_TRIALS,
-    CartesianSensor,
-    Experiment,
-    MatchCriterion,
-    PoissonClutter,
-    Region,
-    Scenario,
-    ScenarioSet,
-    Target,
-)
+from scenarios.clutter import MOST_PLOTS, PoissonClutter, Region
+from scenarios.experiments import LARGEST_SEED, MOST_TRIALS, InitiationExperiment, MatchCriterion
+from scenarios.model import Scenario, ScenarioSet
+from scenarios.sensors import CartesianSensor
+from scenarios.targets import Target
 
 SCENARIO = {
     "name": "one",
@@ -63,7 +55,7 @@ def test_defaults_of_targets_and_clutter():
 
 
 def test_defaults_of_an_experiment_and_a_set():
-    experiment = Experiment.model_validate({"name": "e", "criterion": {"rho": 3}})
+    experiment = InitiationExperiment.model_validate({"name": "e", "criterion": {"rho": 3}})
     assert (experiment.trials, experiment.seed, experiment.control) == (1000, 1, True)
     assert (experiment.scenarios, experiment.initiators, experiment.sweep) == (None, None, {})
     given = scenario_set()
@@ -247,17 +239,17 @@ def test_the_numeric_fields_of_a_scenario_can_be_swept():
         (MatchCriterion, {"rho": 0}),
         (MatchCriterion, {"plots": 0}),
         (MatchCriterion, {"rho": 1, "theta_deg": 91}),
-        (Experiment, {"name": "e"}),
-        (Experiment, {"name": "e", "criterion": {"rho": 1}, "trials": 0}),
-        (Experiment, {"name": "e", "criterion": {"rho": 1}, "trials": MOST_TRIALS + 1}),
-        (Experiment, {"name": "e", "criterion": {"rho": 1}, "control": "no"}),
-        (Experiment, {"name": "e", "criterion": {"rho": 1}, "seed": LARGEST_SEED + 1}),
-        (Experiment, {"name": "e", "criterion": {"rho": 1}, "seed": -1}),
-        (Experiment, {"name": "e", "criterion": {"rho": 1}, "scenarios": []}),
-        (Experiment, {"name": "e", "criterion": {"rho": 1}, "sweep": {"scans": []}}),
-        (Experiment, {"name": "e", "criterion": {"rho": 1}, "sweep": {"scans": 5}}),
-        (Experiment, {"name": "e", "criterion": {"rho": 1}, "sweep": {"scans": [True]}}),
-        (Experiment, {"name": "e", "criterion": {"rho": 1}, "sweep": {"scans": ["5"]}}),
+        (InitiationExperiment, {"name": "e"}),
+        (InitiationExperiment, {"name": "e", "criterion": {"rho": 1}, "trials": 0}),
+        (InitiationExperiment, {"name": "e", "criterion": {"rho": 1}, "trials": MOST_TRIALS + 1}),
+        (InitiationExperiment, {"name": "e", "criterion": {"rho": 1}, "control": "no"}),
+        (InitiationExperiment, {"name": "e", "criterion": {"rho": 1}, "seed": LARGEST_SEED + 1}),
+        (InitiationExperiment, {"name": "e", "criterion": {"rho": 1}, "seed": -1}),
+        (InitiationExperiment, {"name": "e", "criterion": {"rho": 1}, "scenarios": []}),
+        (InitiationExperiment, {"name": "e", "criterion": {"rho": 1}, "sweep": {"scans": []}}),
+        (InitiationExperiment, {"name": "e", "criterion": {"rho": 1}, "sweep": {"scans": 5}}),
+        (InitiationExperiment, {"name": "e", "criterion": {"rho": 1}, "sweep": {"scans": [True]}}),
+        (InitiationExperiment, {"name": "e", "criterion": {"rho": 1}, "sweep": {"scans": ["5"]}}),
         (ScenarioSet, {"name": "s", "scenarios": []}),
         (ScenarioSet, {"name": "s"}),
         (ScenarioSet, {"name": "", "scenarios": [SCENARIO]}),
@@ -301,4 +293,4 @@ def test_what_is_just_allowed():
     Target.model_validate({"position": [1, 2], "velocity": [1, 2], "birth": 3, "death": 3})
     MatchCriterion.model_validate({"rho": 1e-9, "theta_deg": 90})
     given = {"name": "e", "criterion": {"plots": 1}, "seed": LARGEST_SEED, "trials": 1}
-    assert Experiment.model_validate(given).seed == 2**64 - 1
+    assert InitiationExperiment.model_validate(given).seed == 2**64 - 1

@@ -9,17 +9,12 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from algorithms.plots import PlotChunk
-from scenarios.model import (
-    LARGEST_SEED,
-    MOST_TRIALS,
-    CartesianSensor,
-    ExactClutter,
-    PoissonClutter,
-    Region,
-    Scenario,
-    Target,
-)
+from scenarios.clutter import ExactClutter, PoissonClutter, Region
+from scenarios.experiments import LARGEST_SEED, MOST_TRIALS
+from scenarios.model import Scenario
+from scenarios.sensors import CartesianSensor
 from scenarios.simulate import draw, true_lines, true_paths, truth
+from scenarios.targets import Target
 from scenarios.world import World, poisson_distribution
 
 steady = settings(

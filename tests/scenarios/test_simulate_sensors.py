@@ -11,7 +11,8 @@ from scipy import stats
 from algorithms.errors import RequestError
 from algorithms.parameters import validated
 from scenarios.conversion import polar
-from scenarios.model import MOST_TRIALS, Scenario
+from scenarios.experiments import MOST_TRIALS
+from scenarios.model import Scenario
 from scenarios.simulate import draw, true_paths, truth
 from scenarios.world import World
 

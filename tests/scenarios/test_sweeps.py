@@ -5,8 +5,9 @@ import math
 import pytest
 
 from algorithms.parameters import FieldError
+from scenarios.experiments import InitiationExperiment
 from scenarios.files import load_set
-from scenarios.model import Experiment, ScenarioSet
+from scenarios.model import ScenarioSet
 from scenarios.sweeps import MOST_POINTS, parts_of, place, points
 
 SET = {
@@ -50,7 +51,7 @@ def swept(sweep, scenarios=("one",), initiators=("standard",)):
     return list(
         points(
             GIVEN,
-            Experiment.model_validate(
+            InitiationExperiment.model_validate(
                 {
                     "name": "e",
                     "scenarios": list(scenarios),

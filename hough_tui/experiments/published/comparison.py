@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from algorithms.errors import RequestError
 from algorithms.intervals import Z95, effective_count, mean_interval, normal_interval
 from algorithms.parameters import unknown
-from hough_tui.experiments.columns import TrialColumns
 from hough_tui.experiments.engine import Job
-from hough_tui.experiments.plan import Cell, Plan, plan_run
-from hough_tui.experiments.published import course, par, thesis
+from hough_tui.experiments.plan import Plan, plan_run
+from hough_tui.experiments.published import clustering, course, par, thesis
 from hough_tui.experiments.published.tables import MEASURES, Entry, PublishedTable
+from hough_tui.experiments.work import Cell, Columns
 from scenarios.files import load_set
 
 TABLES: dict[str, PublishedTable] = {
-    table.name: table for table in (*course.TABLES, *thesis.TABLES, *par.TABLES)
+    table.name: table for table in (*course.TABLES, *thesis.TABLES, *par.TABLES, *clustering.TABLES)
 }
 
 
@@ -44,11 +44,11 @@ def plan_table(table: PublishedTable, trials: int, seed: int | None = None) -> P
     for experiment in given.experiments:
         wanted = [entry for entry in table.entries if entry.experiment == experiment.name]
         if wanted:
-            names = list(dict.fromkeys(entry.initiator for entry in wanted))
+            names = list(dict.fromkeys(entry.method for entry in wanted))
             sweep = {
                 key: list(dict.fromkeys(entry.swept[key] for entry in wanted)) for key in experiment.sweep
             }
-            update = {"initiators": names, "sweep": sweep}
+            update = {experiment.parts[-1]: names, "sweep": sweep}
             experiments.append(experiment.model_copy(update=update))
     return plan_run([given.model_copy(update={"experiments": experiments})], trials=trials, seed=seed)
 
@@ -66,18 +66,18 @@ def compare(table: PublishedTable, job: Job) -> dict[str, Any]:
     }
 
 
-def _columns_of(entry: Entry, found: Sequence[tuple[Cell, TrialColumns]]) -> TrialColumns:
+def _columns_of(entry: Entry, found: Sequence[tuple[Cell, Columns]]) -> Columns:
     return next(
         columns
         for cell, columns in found
         if cell.experiment.name == entry.experiment
-        and cell.entry.name == entry.initiator
+        and cell.entry.name == entry.method
         and cell.swept == entry.swept
-        and entry.scenario in (None, cell.scenario.name)
+        and entry.world in (None, cell.world.name)
     )
 
 
-def _compared(table: PublishedTable, entry: Entry, columns: TrialColumns) -> dict[str, Any]:
+def _compared(table: PublishedTable, entry: Entry, columns: Columns) -> dict[str, Any]:
     measure = MEASURES[entry.metric]
     values = measure.values(columns)
     values = values[np.isfinite(values)]
@@ -98,6 +98,9 @@ def _compared(table: PublishedTable, entry: Entry, columns: TrialColumns) -> dic
         low, high = interval(values)
         # The normal distribution knows no bound; nothing that is compared can be negative.
         told["ci95"] = [max(0.0, low), high]
+        if measure.is_root:
+            told["measured"] = math.sqrt(values.mean())
+            told["ci95"] = [math.sqrt(end) for end in told["ci95"]]
         if entry.published is not None and entry.is_judged:
             told["consistent"] = test(entry.published, table.trials, table.rounding, values)
     return told

@@ -32,9 +32,9 @@ def _table() -> PublishedTable:
         for target in COMBINATORIAL:
             case = f"{target}, {words}"
             figure = published[target] if published is not None else None
-            entries.append(Entry(case, "table-2", initiator, "success_rate", figure, note, scenario=target))
+            entries.append(Entry(case, "table-2", initiator, "success_rate", figure, note, world=target))
             for metric, said in FURTHER:
-                entries.append(Entry(case, "table-2", initiator, metric, None, said, scenario=target))
+                entries.append(Entry(case, "table-2", initiator, metric, None, said, world=target))
     return PublishedTable(
         name="par-2",
         title="Table 2: probability of true track initiation by target, 4 scans, λ = 20",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from hough_tui.experiments.columns import TrialColumns
 from hough_tui.experiments.tallies import false_ratio
 
-PerTrial = Callable[[TrialColumns], NDArray[np.float64]]
+PerTrial = Callable[[Any], NDArray[np.float64]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,10 +23,12 @@ class Measure:
     ----------
     values : float64 (trials,), of the columns of a cell; NaN for a trial that does not count
     is_share : whether each value lies in [0, 1], so that the mean is a rate
+    is_root : whether values are squares, and the root of their mean is told
     """
 
     values: PerTrial
     is_share: bool = False
+    is_root: bool = False
 
 
 def _square_error(errors: NDArray[np.float32]) -> NDArray[np.float64]:
@@ -54,6 +57,8 @@ MEASURES: dict[str, Measure] = {
     "duplicates_per_trial": Measure(lambda columns: columns.duplicates.astype(np.float64)),
     "theta_mse": Measure(lambda columns: _square_error(columns.theta_error)),
     "rho_mse": Measure(lambda columns: _square_error(columns.rho_error)),
+    "count_exact_rate": Measure(lambda columns: (columns.excess == 0).astype(np.float64), is_share=True),
+    "centroid_rmse": Measure(lambda columns: columns.trial_square, is_root=True),
 }
 """What a figure may measure, by the name of its metric; mean square errors in rad² and the unit²."""
 
@@ -65,8 +70,8 @@ class Entry:
     Attributes
     ----------
     case : how the row is called
-    experiment, initiator, swept, scenario : which cell of the bundled set measures it; no scenario is
-        named where the experiment has one only
+    experiment, method, swept, world : which cell of the bundled set measures it: the name of an entry
+        (initiator or clustering), and of a scenario or scene where the experiment has several
     metric : a name of `MEASURES`
     published : the printed figure; None where the source has none
     note : what a reader must know
@@ -75,13 +80,13 @@ class Entry:
 
     case: str
     experiment: str
-    initiator: str
+    method: str
     metric: str
     published: float | None = None
     note: str | None = None
     swept: dict[str, int | float] = field(default_factory=dict)
     is_judged: bool = True
-    scenario: str | None = None
+    world: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,8 +27,8 @@ from hough_tui.ui.forms.sensor_table import SensorTable
 from hough_tui.ui.forms.target_table import TargetTable
 from hough_tui.ui.forms.value_field import ValueField
 from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited, FieldUnreadable
-from scenarios.model import Target
 from scenarios.sensors import CartesianSensor
+from scenarios.targets import Target
 
 TWO_COLUMNS = 100
 """The width from which fields stand in two columns."""

@@ -12,7 +12,8 @@ from algorithms.parameters import Dimension
 from hough_tui.reports.numerals import significant
 from hough_tui.ui.forms.fields import unit_text
 from hough_tui.ui.forms.list_table import ListTable
-from scenarios.model import Scenario, Target
+from scenarios.model import Scenario
+from scenarios.targets import Target
 
 PART = 0.25
 """The part of the region that a new target crosses within the batch."""

@@ -202,7 +202,7 @@ def _notes(
         lone = len(everywhere) - len(common)
         notes.append(f"{lone} row{'s stand' if lone > 1 else ' stands'} in one run only and are left out.")
     criteria = [
-        [row["criterion"] for row in run.document["rows"] if identity(row) in common] for _, run in runs
+        [row.get("criterion") for row in run.document["rows"] if identity(row) in common] for _, run in runs
     ]
     if any(before != after for before, after in pairwise(criteria)):
         notes.append("The runs do not count success by the same criterion everywhere.")

@@ -26,8 +26,9 @@ from hough_tui.ui.naming import free_name
 from hough_tui.ui.screens.choice import Choice
 from hough_tui.ui.widgets.prediction_density import PredictionDensity
 from hough_tui.ui.widgets.prediction_panel import PredictionPanel
+from scenarios.entries import InitiatorEntry
 from scenarios.files import set_data
-from scenarios.model import InitiatorEntry, Scenario, ScenarioSet
+from scenarios.model import Scenario, ScenarioSet
 
 WIDE, MEDIUM = 118, 88
 """Columns from which list, form and prediction stand side by side, and from which the prediction stands
@@ -159,8 +160,13 @@ class InitiatorView(Widget):
             return
         entry = given.initiators[self._index]
         scenario = self._scenario_of(entry)
-        refusal = why_not_in_plane(entry, scenario)
         summary = f"{entry.initiator}: {entry.algorithm.summary} ({entry.algorithm.source})"
+        if scenario is None:
+            caption.update(summary)
+            form.load(entry, ("initiators", self._index))
+            self._predict(None)
+            return
+        refusal = why_not_in_plane(entry, scenario)
         if ignores_z(entry, scenario):
             summary = f"Works in the plane: z of {scenario.name} is ignored. {summary}"
         caption.update(refusal or summary)
@@ -177,9 +183,10 @@ class InitiatorView(Widget):
         accumulates = entry is not None and isinstance(entry.parameters, AccumulatingParameters)
         self.set_class(not accumulates, "without-prediction")
         self._arrange()
-        if entry is not None and accumulates:
+        scenario = self._scenario_of(entry) if entry is not None and accumulates else None
+        if entry is not None and scenario is not None:
             others = len(self._scenarios_of(entry)) - 1
-            self.query_one(PredictionPanel).ask(entry, self._scenario_of(entry), others)
+            self.query_one(PredictionPanel).ask(entry, scenario, others)
 
     def _scenarios_of(self, entry: InitiatorEntry) -> list[Scenario]:
         """Return the scenarios that experiments run the entry on, or else all that the set has."""
@@ -192,22 +199,23 @@ class InitiatorView(Widget):
         }
         return list(found.values()) or list(self._given.scenarios)
 
-    def _scenario_of(self, entry: InitiatorEntry) -> Scenario:
+    def _scenario_of(self, entry: InitiatorEntry) -> Scenario | None:
         """Return the scenario that was chosen for a look, where the entry runs on it, or else its first."""
         found = self._scenarios_of(entry)
-        return next((scenario for scenario in found if scenario.name == self._scenario), found[0])
+        first = found[0] if found else None
+        return next((scenario for scenario in found if scenario.name == self._scenario), first)
 
     def action_next_scenario(self) -> None:
         """Predict for the next scenario that the initiator runs on."""
         if self._given is None or not self._given.initiators:
             return
         entry = self._given.initiators[self._index]
-        found = self._scenarios_of(entry)
-        if len(found) < 2:
-            self.notify(f"{entry.name} runs on {found[0].name} only", markup=False)
+        found, now = self._scenarios_of(entry), self._scenario_of(entry)
+        if now is None or len(found) < 2:
+            only = "no scenario" if now is None else f"{now.name} only"
+            self.notify(f"{entry.name} runs on {only}", markup=False)
             return
-        now = found.index(self._scenario_of(entry))
-        self._scenario = found[(now + 1) % len(found)].name
+        self._scenario = found[(found.index(now) + 1) % len(found)].name
         self.show_set(self._given)
 
     def action_take(self) -> None:

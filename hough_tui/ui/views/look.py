@@ -15,8 +15,11 @@ from algorithms.errors import RequestError
 from algorithms.parameters import Parameters
 from hough_tui.experiments.choice import seed_of
 from hough_tui.experiments.look import Picture, TrialLook, look, picture
+from hough_tui.experiments.plot_sources import Stage
 from hough_tui.ui.views.look_panel import LookPanel
-from scenarios.model import InitiatorEntry, MatchCriterion, Scenario, ScenarioSet
+from scenarios.entries import InitiatorEntry
+from scenarios.experiments import MatchCriterion
+from scenarios.model import Scenario, ScenarioSet
 
 if TYPE_CHECKING:
     from hough_tui.ui.messages import TrialOpened
@@ -92,7 +95,7 @@ class LookView(Widget):
         """Show the set as it is now, the same trial where it is still there."""
         self._given = given
         self._opened = None
-        self._scenario = min(self._scenario, len(given.scenarios) - 1)
+        self._scenario = max(0, min(self._scenario, len(given.scenarios) - 1))
         self._entry = min(self._entry, max(0, len(given.initiators) - 1))
         self._ask()
 
@@ -127,7 +130,7 @@ class LookView(Widget):
 
     def action_scenario(self) -> None:
         """Look at the next scenario."""
-        if self._given is not None:
+        if self._given is not None and self._given.scenarios:
             self.choose((self._scenario + 1) % len(self._given.scenarios))
 
     async def action_side_by_side(self) -> None:
@@ -165,21 +168,22 @@ class LookView(Widget):
     def _begin(self) -> None:
         if self._given is None:
             return
-        if not self._given.initiators:
-            self.query(LookPanel).first().refuse("The set has no initiators.")
-            return
+        for part in ("scenarios", "initiators"):
+            if not getattr(self._given, part):
+                self.query(LookPanel).first().refuse(f"The set has no {part}.")
+                return
         chosen: list[tuple[InitiatorEntry, Parameters | None]]
         if self._opened is not None:
             cell, swept = self._opened.cell, self._opened.cell.swept
             scenario, seed, criterion = cell.scenario, cell.experiment.seed, cell.criterion
-            chosen = [(cell.entry, cell.parameters)]
+            chosen, stage = [(cell.entry, cell.parameters)], cell.clustering
         else:
             scenario, swept = self._given.scenarios[self._scenario], None
             seed, criterion = seed_of(self._given, scenario), criterion_of(self._given, scenario)
-            chosen = [(self._given.initiators[self._entry], None)]
+            chosen, stage = [(self._given.initiators[self._entry], None)], None
         if self._is_double:
             chosen.append((self._given.initiators[(self._entry + 1) % len(self._given.initiators)], None))
-        self._work(scenario, seed, self._trial, chosen, criterion, swept)
+        self._work(scenario, seed, self._trial, chosen, criterion, swept, stage)
 
     @work(thread=True, exclusive=True, exit_on_error=False, group="look", name="look")
     def _work(
@@ -190,10 +194,11 @@ class LookView(Widget):
         chosen: list[tuple[InitiatorEntry, Parameters | None]],
         criterion: MatchCriterion | None,
         swept: dict[str, int | float] | None,
+        stage: Stage,
     ) -> None:
         """Draw the trial and let the initiators work on it."""
         worker = get_current_worker()
-        drawn = picture(scenario, seed, trial)
+        drawn = picture(scenario, seed, trial, stage)
         found: list[TrialLook | str] = []
         for entry, parameters in chosen:
             if worker.is_cancelled:

@@ -14,7 +14,7 @@ from algorithms.errors import RequestError
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.store import FolderStore
-from hough_tui.experiments.tallies import Row
+from hough_tui.experiments.work import Row
 from hough_tui.ui.views.shown_run import LiveRun
 from scenarios.model import ScenarioSet
 

@@ -85,7 +85,11 @@ class ScenarioView(Widget):
     def show_set(self, given: ScenarioSet) -> None:
         """Show the set as it is now."""
         self._given = given
-        self._index = min(self._index, len(given.scenarios) - 1)
+        self._index = max(0, min(self._index, len(given.scenarios) - 1))
+        self.query_one("#scenario-parts").display = bool(given.scenarios)
+        if not given.scenarios:
+            self.query_one(Caption).tell("The set has no scenario")
+            return
         self.query_one(ModelForm).load(self._scenario, ("scenarios", self._index), unit=self._scenario.unit)
         self._ask()
 
@@ -121,7 +125,7 @@ class ScenarioView(Widget):
 
     def action_next_scenario(self) -> None:
         """Go to the next scenario of the set."""
-        if self._given is not None:
+        if self._given is not None and self._given.scenarios:
             self.choose((self._index + 1) % len(self._given.scenarios))
 
     @property
@@ -136,7 +140,7 @@ class ScenarioView(Widget):
         self._timer = self.set_timer(DEBOUNCE, self._begin)
 
     def _begin(self) -> None:
-        if self._given is not None:
+        if self._given is not None and self._given.scenarios:
             self._draw(self._scenario, seed_of(self._given, self._scenario), self._trial)
 
     @work(thread=True, exclusive=True, exit_on_error=False, group="picture", name="picture")

@@ -11,14 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.errors import RequestError
-from hough_tui.experiments.columns import PLAIN, TrialColumns
+from hough_tui.experiments.columns import TrialColumns
 from hough_tui.experiments.engine import Job
-from hough_tui.experiments.plan import Cell, plan_run
+from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import result
 from hough_tui.experiments.store import Run
-from hough_tui.experiments.tallies import Row, tally
+from hough_tui.experiments.work import Cell, Columns, Row
+from scenarios.sweeps import SINGULAR
 
-Identity = tuple[str, str, str, str, tuple[tuple[str, float], ...]]
+Identity = tuple[str, str, tuple[str | None, ...], tuple[tuple[str, float], ...]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +33,25 @@ class RowTrials:
     """
 
     cell: Cell
-    columns: TrialColumns
+    columns: Columns
 
     @property
     def numbers(self) -> NDArray[np.int32]:
         """Which trials of the experiment they are, int32 (trials,)."""
         return self.columns.trial
+
+    @property
+    def of_tracks(self) -> TrialColumns:
+        """What each trial gave, of a row of initiation.
+
+        Raises
+        ------
+        RequestError
+            Where the row is of clustering.
+        """
+        if not isinstance(self.columns, TrialColumns):
+            raise RequestError("this row is of clustering: its trials have clusters, and no tracks")
+        return self.columns
 
 
 class ShownRun(ABC):
@@ -79,7 +93,7 @@ class LiveRun(ShownRun):
     def __init__(self, job: Job) -> None:
         self.job = job
         self.name = "+".join(given.name for given in job.plan.sets)
-        self.rows = tuple(map(blank_row, job.plan.cells))
+        self.rows = tuple(cell.blank() for cell in job.plan.cells)
         self.is_over = False
         self._found: Run | None = None
 
@@ -126,7 +140,7 @@ class LiveRun(ShownRun):
             return row
         if not finished.all():
             columns = columns.part(finished)
-        return tally(cell, columns, float(self.job._seconds[index]))
+        return cell.tally(columns, float(self.job._seconds[index]))
 
     def _finished(self, index: int) -> NDArray[np.bool_]:
         # A copy: the workers go on, and all columns must be cut by one and the same mask.
@@ -160,40 +174,25 @@ class KeptRun(ShownRun):
             arrays["trial"] = np.arange(row["trials"], dtype=np.int32)
         # Runs of earlier versions do not know it.
         arrays.setdefault("mixed", np.full(row["trials"], -1, np.int32))
-        return RowTrials(cell, trial_columns(arrays))
+        return RowTrials(cell, kept_columns(cell, arrays))
 
     def document(self) -> dict[str, Any]:
         return self.run.document
 
 
-def blank_row(cell: Cell) -> Row:
-    """Return the row of a cell none of whose trials is finished."""
-    return {
-        "set": cell.set_name,
-        "experiment": cell.experiment.name,
-        "scenario": cell.scenario.name,
-        "initiator": cell.entry.name,
-        "swept": dict(cell.swept),
-        "trials": 0,
-        "seed": cell.experiment.seed,
-        "unit": cell.scenario.unit.value,
-        "criterion": cell.criterion.document,
-    }
-
-
 def identity(row: Mapping[str, Any]) -> Identity:
     """Return what makes two rows of different runs the same one."""
     swept = tuple(sorted((row.get("swept") or {}).items()))
-    return row["set"], row["experiment"], row["scenario"], row["initiator"], swept
+    return row["set"], row["experiment"], tuple(row.get(part) for part in SINGULAR.values()), swept
 
 
 def cell_words(cell: Cell) -> str:
     """Return what ran in a cell: scenario, initiator, swept values."""
     swept = (f"{key} {value:g}" for key, value in cell.swept.items())
-    return " · ".join((cell.scenario.name, cell.entry.name, *swept))
+    return " · ".join((*cell.elements.values(), *swept))
 
 
-def trial_columns(arrays: Mapping[str, NDArray[Any]]) -> TrialColumns:
+def kept_columns(cell: Cell, arrays: Mapping[str, NDArray[Any]]) -> Columns:
     """Return the per-trial columns of a row as they were kept.
 
     Raises
@@ -201,10 +200,11 @@ def trial_columns(arrays: Mapping[str, NDArray[Any]]) -> TrialColumns:
     RequestError
         Where one is missing.
     """
-    missing = [name for name in PLAIN if name not in arrays]
+    empty = cell.empty_columns()
+    missing = [name for name in empty.arrays() if name not in arrays]
     if missing:
         raise RequestError(f"the run was kept without the columns {', '.join(missing)}")
-    return TrialColumns.of(arrays)
+    return type(empty).of(arrays)
 
 
 def _cells(run: Run) -> list[Cell | None]:
@@ -220,5 +220,5 @@ def _cells(run: Run) -> list[Cell | None]:
     found: list[Cell | None] = []
     for row in rows:
         wanted = identity(row)
-        found.append(next((cell for cell in cells if identity(blank_row(cell)) == wanted), None))
+        found.append(next((cell for cell in cells if identity(cell.blank()) == wanted), None))
     return found

@@ -10,7 +10,8 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.widgets import Select
 
-from hough_tui.experiments.tallies import Row, false_ratio
+from hough_tui.experiments.tallies import false_ratio
+from hough_tui.experiments.work import Row
 from hough_tui.reports.charts import rate_chart
 from hough_tui.reports.metrics import KNOWN
 from hough_tui.reports.numerals import number
@@ -50,6 +51,8 @@ class ChartPane(Vertical):
         """Show a run around the row of an index."""
         self._run, self._rows, self._index = run, tuple(rows), index
         metrics = self._metrics()
+        if metrics and self.metric not in (*metrics, BY_TRIAL):
+            self.metric = metrics[0]
         options = [(KNOWN[key].label, key) for key in metrics]
         if options:
             options.append(("false % by trial, of the row chosen", BY_TRIAL))
@@ -129,5 +132,5 @@ def _rates_drawn(rows: Sequence[Row], metric: str, width: int, height: int) -> s
 
 def _trials_drawn(run: ShownRun, index: int, width: int, height: int) -> str:
     trials = run.trials(index)
-    ratio = false_ratio(trials.columns)
+    ratio = false_ratio(trials.of_tracks)
     return trial_chart(cell_words(trials.cell), trials.numbers, ratio, width, height)

@@ -17,7 +17,8 @@ from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.messages import ElementAdded, ElementRemoved
 from hough_tui.ui.naming import free_name
 from hough_tui.ui.widgets.caption import Caption
-from scenarios.model import Experiment, ScenarioSet
+from scenarios.experiments import Experiment
+from scenarios.model import ScenarioSet
 
 LEAST_PLOTS = 3
 """Plots of a target that a track must hold by the criterion of a new experiment."""
@@ -67,7 +68,8 @@ class ExperimentForm(Vertical):
             self.query_one(Caption).tell(Part("Names as in the tree", 1), "a sweep: scans: 5, 10, 15")
         if chosen is not None:
             self._index = given.experiments.index(chosen)
-            unit = given.chosen_scenarios(chosen)[0].unit
+            scenarios = given.chosen_scenarios(chosen)
+            unit = scenarios[0].unit if scenarios else None
             form.load(chosen, ("experiments", self._index), unit=unit)
 
     def refuse(self, found: Sequence[Problem]) -> None:

@@ -18,7 +18,7 @@ from textual.widgets import DataTable, Static
 
 from algorithms.errors import RequestError
 from hough_tui.directories import data_directory
-from hough_tui.experiments.tallies import Row
+from hough_tui.experiments.work import Row
 from hough_tui.reports.documents import markdown_text
 from hough_tui.reports.rates import rate_sheets
 from hough_tui.ui.messages import TrialOpened

@@ -6,7 +6,7 @@ from algorithms.parameters import FieldError, replaced
 from hough_tui.ui.forms.controls import NumberInput
 from hough_tui.ui.forms.fields import described
 from hough_tui.ui.forms.numbers import Unreadable, Wanted, read
-from scenarios.model import Experiment
+from scenarios.experiments import Experiment
 
 WHOLE = Wanted(whole=True, optional=True)
 

@@ -15,7 +15,8 @@ from hough_tui.reports.metrics import field_name
 from hough_tui.reports.numerals import as_given
 from hough_tui.ui.views.running import Asked
 from hough_tui.ui.widgets.run_field import RunField
-from scenarios.model import Experiment, ScenarioSet
+from scenarios.experiments import Experiment
+from scenarios.model import ScenarioSet
 
 ALL = ""
 """Stands for all experiments: none can have an empty name."""
@@ -132,8 +133,7 @@ def asked_words(asked: Asked) -> str:
     """Return how much is asked for."""
     chosen = [experiment for experiment in asked.given.experiments if experiment.name in asked.experiments]
     cells = [
-        len(asked.given.chosen_scenarios(experiment))
-        * len(asked.given.chosen_entries(experiment))
+        math.prod(len(asked.given.chosen(experiment, part)) for part in experiment.parts)
         * math.prod(map(len, experiment.sweep.values()))
         for experiment in chosen
     ]
@@ -149,13 +149,15 @@ def asked_text(asked: Asked) -> str:
     for experiment in asked.given.experiments:
         if experiment.name not in asked.experiments:
             continue
-        entries = ", ".join(entry.name for entry in asked.given.chosen_entries(experiment))
-        scenarios = ", ".join(scenario.name for scenario in asked.given.chosen_scenarios(experiment))
+        entries, *_, worlds = (
+            ", ".join(element.name for element in asked.given.chosen(experiment, part))
+            for part in reversed(experiment.parts)
+        )
         swept = "".join(
             f" · {field_name(key)} {', '.join(map(as_given, values))}"
             for key, values in experiment.sweep.items()
         )
-        lines += [experiment.name, experiment.description, f"{entries} on {scenarios}{swept}", ""]
+        lines += [experiment.name, experiment.description, f"{entries} on {worlds}{swept}", ""]
     return "\n".join([*lines, asked_words(asked), "", "r runs it"])
 
 

@@ -37,7 +37,7 @@ class TrialColumn:
 
 
 def _failed_first(trials: RowTrials) -> Rows:
-    columns = trials.columns
+    columns = trials.of_tracks
     found = columns.found.sum(axis=1)
     # The last key counts most.
     return np.lexsort((trials.numbers, -columns.duplicates, -columns.false, found))
@@ -48,19 +48,19 @@ def _by_number(trials: RowTrials) -> Rows:
 
 
 def _by_false(trials: RowTrials) -> Rows:
-    return np.argsort(-trials.columns.false, kind="stable")
+    return np.argsort(-trials.of_tracks.false, kind="stable")
 
 
 def _by_duplicates(trials: RowTrials) -> Rows:
-    return np.argsort(-trials.columns.duplicates, kind="stable")
+    return np.argsort(-trials.of_tracks.duplicates, kind="stable")
 
 
 def _by_rho_error(trials: RowTrials) -> Rows:
-    return _by_greatest(trials.columns.rho_error)
+    return _by_greatest(trials.of_tracks.rho_error)
 
 
 def _by_theta_error(trials: RowTrials) -> Rows:
-    return _by_greatest(trials.columns.theta_error)
+    return _by_greatest(trials.of_tracks.theta_error)
 
 
 def _by_greatest(errors: NDArray[np.float32]) -> Rows:
@@ -90,7 +90,7 @@ class TrialTable:
 
     def __init__(self, trials: RowTrials) -> None:
         self.trials = trials
-        columns = trials.columns
+        columns = trials.of_tracks
         self.targets = columns.found.shape[1]
         self._found = columns.found.sum(axis=1)
         self.missed = int((self._found < self.targets).sum())
@@ -112,7 +112,7 @@ class TrialTable:
         return f"{len(self):,} trials{missing} · {self.with_false:,} have false tracks · lengths in {unit}"
 
     def _columns(self) -> list[TrialColumn]:
-        columns, numbers = self.trials.columns, self.trials.numbers
+        columns, numbers = self.trials.of_tracks, self.trials.numbers
         widest = len(f"{numbers.max(initial=0):,}")
         found = [
             TrialColumn("trial", max(6, widest), lambda row: (f"{numbers[row]:,}", PLAIN), "trial"),
@@ -142,15 +142,15 @@ class TrialTable:
         return f"{count}/{self.targets}", PLAIN if count == self.targets else WRONG
 
     def _theta(self, target: int) -> Callable[[int], tuple[str, str]]:
-        errors = self.trials.columns.theta_error
+        errors = self.trials.of_tracks.theta_error
         return lambda row: self._error(row, target, math.degrees(float(errors[row, target])), 2)
 
     def _rho(self, target: int) -> Callable[[int], tuple[str, str]]:
-        errors = self.trials.columns.rho_error
+        errors = self.trials.of_tracks.rho_error
         return lambda row: self._error(row, target, float(errors[row, target]), 3)
 
     def _error(self, row: int, target: int, value: float, decimals: int) -> tuple[str, str]:
-        if not self.trials.columns.found[row, target]:
+        if not self.trials.of_tracks.found[row, target]:
             return "missed", WRONG
         return fixed(number(value), decimals), PLAIN
 

@@ -15,7 +15,7 @@ from algorithms.initiators.registry import initiator
 from algorithms.parameters import validated
 from algorithms.plots import PlotChunk, Plots
 from algorithms.scoring import Criterion
-from scenarios.model import Target
+from scenarios.targets import Target
 
 steady = settings(deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 

@@ -1,7 +1,8 @@
 import pytest
 
 from algorithms.errors import RequestError
-from hough_tui.experiments.plan import LARGEST_CHUNK, plan_run
+from hough_tui.experiments.plan import plan_run
+from hough_tui.experiments.work import LARGEST_CHUNK
 from scenarios.files import load_set, parse_set
 
 

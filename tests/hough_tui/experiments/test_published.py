@@ -62,9 +62,7 @@ def measured(name, trials):
     }
     spreads = [
         np.nanstd(
-            MEASURES[entry.metric].values(
-                found[entry.experiment, entry.initiator, tuple(entry.swept.items())]
-            )
+            MEASURES[entry.metric].values(found[entry.experiment, entry.method, tuple(entry.swept.items())])
         )
         for entry in table.entries
     ]
@@ -172,7 +170,32 @@ def test_every_figure_has_its_cell_in_a_bundled_set():
         experiments = {experiment.name: experiment for experiment in given.experiments}
         for entry in table.entries:
             experiment = experiments[entry.experiment]
-            assert entry.initiator in [found.name for found in given.chosen_entries(experiment)]
+            worlds, *_, methods = (given.chosen(experiment, part) for part in experiment.parts)
+            assert entry.method in [found.name for found in methods]
+            assert entry.world is None or entry.world in [found.name for found in worlds]
             assert set(entry.swept) == set(experiment.sweep)
             assert all(entry.swept[key] in experiment.sweep[key] for key in entry.swept)
             assert entry.metric in MEASURES
+
+
+def test_counts_and_centroids_by_kind_of_scene():
+    document = measured_alone("clustering", 200)
+    rows = {(row["case"], row["metric"]): row for row in document["rows"]}
+    assert len(rows) == 2 * 4 * 7
+    judged = [row for row in rows.values() if row["consistent"] is not None]
+    assert len(judged) == 18
+    assert all(row["metric"] == "count_exact_rate" and row["consistent"] for row in judged)
+    for scene in {row["case"].partition(",")[0] for row in document["rows"]}:
+        ours, known = (
+            rows[f"{scene}, {method}", "centroid_rmse"]["measured"] for method in ("recommended", "k-means")
+        )
+        assert ours <= 1.1 * known
+        assert rows[f"{scene}, recommended", "count_exact_rate"]["measured"] >= 0.97
+
+
+def measured_alone(name, trials):
+    """Return the document of a table."""
+    table = published_table(name)
+    job = Job(plan_table(table, trials), 2)
+    job.wait()
+    return compare(table, job)

@@ -16,8 +16,9 @@ from algorithms.clustering.points import Points
 from hough_tui.experiments.clustering import cluster_recording, document
 from hough_tui.reports.charts import cluster_chart
 from hough_tui.reports.clusters import cluster_table, step_table
+from scenarios.files import load_set
 from scenarios.point_files import PointRecording
-from scenarios.range_doppler import SCENES, draw_scene
+from scenarios.range_doppler import draw_scene
 
 EXTENTS = {"range_extent": 16.0, "doppler_extent": 12.0}
 WIDTHS = (60, 80, 120, 160)
@@ -25,7 +26,7 @@ WIDTHS = (60, 80, 120, 160)
 
 @pytest.fixture(scope="module")
 def drawn():
-    return draw_scene(SCENES["interference"], 5, 0, 2).points
+    return draw_scene(load_set("range-doppler").scene("interference"), 5, 0, 2).points
 
 
 def told(points, parameters):

@@ -13,19 +13,13 @@ from hough_tui.ui.forms.fields import FieldDescription, Kind, described, walk
 from hough_tui.ui.forms.numbers import Unreadable
 from hough_tui.ui.forms.texts import text_of, value_of
 from hough_tui.ui.screens.explanation import explained
+from scenarios.clutter import ExactClutter, PoissonClutter, Region
+from scenarios.entries import entry_model
+from scenarios.experiments import InitiationExperiment, MatchCriterion
 from scenarios.files import bundled_paths, load_set
-from scenarios.model import (
-    CartesianSensor,
-    ExactClutter,
-    Experiment,
-    MatchCriterion,
-    PoissonClutter,
-    Region,
-    Scenario,
-    ScenarioSet,
-    Target,
-    entry_model,
-)
+from scenarios.model import Scenario, ScenarioSet
+from scenarios.sensors import CartesianSensor
+from scenarios.targets import Target
 
 MODELS = [
     ScenarioSet,
@@ -34,7 +28,7 @@ MODELS = [
     CartesianSensor,
     PoissonClutter,
     Target,
-    Experiment,
+    InitiationExperiment,
     MatchCriterion,
     GridParameters,
     *(entry_model(known) for known in initiators().values()),
@@ -97,9 +91,9 @@ def test_every_value_of_a_set_is_shown_as_text_that_reads_as_it(name):
         (GridParameters, ("rho_step",), Kind.NUMBER),
         (GridParameters, ("rho_bins",), Kind.WHOLE),
         (GridParameters, ("origin",), Kind.VECTOR),
-        (Experiment, ("control",), Kind.FLAG),
-        (Experiment, ("scenarios",), Kind.TEXTS),
-        (Experiment, ("sweep",), Kind.MAPPING),
+        (InitiationExperiment, ("control",), Kind.FLAG),
+        (InitiationExperiment, ("scenarios",), Kind.TEXTS),
+        (InitiationExperiment, ("sweep",), Kind.MAPPING),
     ],
 )
 def test_the_kind_of_a_field_follows_from_its_type(model, path, kind):
@@ -183,7 +177,7 @@ def test_vectors_have_as_many_columns_as_the_elements_have_numbers():
 
 
 def test_sweeps_are_read_name_by_name():
-    field = field_of(Experiment, "sweep")
+    field = field_of(InitiationExperiment, "sweep")
     assert value_of(field, "scans: 5, 10; rate: [0.5, 1]") == {"scans": [5, 10], "rate": [0.5, 1]}
     assert value_of(field, "") == {}
     for wrong in ("scans", "scans: x", "scans: 1; scans: 2", ": 5", "scans:"):

@@ -9,7 +9,7 @@ from textual.app import App
 
 from hough_tui.experiments.columns import TrialColumns
 from hough_tui.experiments.plan import plan_run
-from hough_tui.ui.views.shown_run import RowTrials, blank_row
+from hough_tui.ui.views.shown_run import RowTrials
 from hough_tui.ui.widgets.rate_grid import RateGrid, rate_columns, sort_value
 from hough_tui.ui.widgets.trial_list import TrialList, first_order
 from hough_tui.ui.widgets.trial_table import ORDERS, TrialTable
@@ -165,7 +165,7 @@ def test_success_by_target_stands_beside_success_when_asked_for():
 
 
 def test_a_row_without_trials_can_be_shown(cell):
-    assert [column.name for column in rate_columns([blank_row(cell)])][:3] == [
+    assert [column.name for column in rate_columns([cell.blank()])][:3] == [
         "initiator", "scans", "success %"
     ]  # fmt: skip
 

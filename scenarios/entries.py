@@ -1,0 +1,164 @@
+"""Initiators and clusterings with their parameters, as a set lists them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, cast, get_args
+
+from pydantic import Discriminator, Tag, create_model
+
+from algorithms.clustering.parameters import MODES, Clustering
+from algorithms.initiators.base import Initiator
+from algorithms.initiators.registry import initiator, initiators
+from algorithms.parameters import Declared, Name, Parameters, parameter, with_default
+
+if TYPE_CHECKING:
+    from scenarios.model import Scenario
+    from scenarios.scenes import Scene
+
+
+class InitiatorEntry(Declared):
+    """An initiator with its parameters, as a set lists it.
+
+    The entries of a set are of subclasses, one for each known initiator, that have the
+    initiator's parameters as further fields.
+    """
+
+    name: Name = parameter(help="what it is called in the set; the initiator's own name where that is enough")
+    initiator: str = parameter(help="which initiator it is")
+
+    @classmethod
+    def is_meant(cls, data: Mapping[str, Any]) -> bool:
+        """Return whether data name this initiator, by `initiator` or else by `name`."""
+        return bool(_which(data) == cls.model_fields["initiator"].default)
+
+    @property
+    def algorithm(self) -> Initiator:
+        """The initiator itself."""
+        return initiator(self.initiator)
+
+    @property
+    def parameters(self) -> Parameters:
+        """The initiator's parameters, as they were given."""
+        declared = self.algorithm.parameters
+        return declared.model_construct(
+            self.model_fields_set & set(declared.model_fields),
+            **{name: getattr(self, name) for name in declared.model_fields},
+        )
+
+    def resolved_on(self, scenario: Scenario) -> Parameters:
+        """Return the parameters with every `auto` worked out for a scenario."""
+        return self.parameters.resolved(scenario.context)
+
+
+def entry_model(declared: Initiator) -> type[InitiatorEntry]:
+    """Return the model of the entries of one initiator."""
+    kind: Any = Literal[declared.name]
+    bases: Any = (InitiatorEntry, declared.parameters)
+    return cast(
+        "type[InitiatorEntry]",
+        create_model(
+            f"{declared.name.title().replace('-', '')}Entry",
+            __base__=bases,
+            __doc__=declared.summary,
+            __cls_kwargs__=_told_by_name("initiator", declared.name),
+            initiator=(kind, parameter(declared.name, help="which initiator it is")),
+        ),
+    )
+
+
+def _which(entry: Any) -> str | None:
+    return _named(entry, "initiator")
+
+
+class ClusteringEntry(Declared):
+    """A mode of clustering with its parameters, as a set lists it.
+
+    The entries of a set are of subclasses, one for each mode, that have the mode's parameters as
+    further fields.
+    """
+
+    name: Name = parameter(help="what it is called in the set; the mode's own name where that is enough")
+    mode: str = parameter(help="how the points of a target are gathered")
+
+    @classmethod
+    def is_meant(cls, data: Mapping[str, Any]) -> bool:
+        """Return whether data name this mode, by `mode` or else by `name`."""
+        return bool(_which_mode(data) == cls.model_fields["mode"].default)
+
+    @property
+    def parameters(self) -> Clustering:
+        """The mode's parameters, as they were given."""
+        declared = MODES[self.mode]
+        return declared.model_construct(
+            self.model_fields_set & set(declared.model_fields),
+            **{name: getattr(self, name) for name in declared.model_fields},
+        )
+
+    def resolved_on(self, scene: Scene) -> Clustering:
+        """Return the parameters with every `auto` worked out for a scene."""
+        return self.parameters.resolved(len(scene.targets))
+
+
+Stage = Literal["none", "ideal"]
+
+
+class WithoutClustering(Declared):
+    """What may stand where a scenario's points would be clustered before initiation."""
+
+    name: Stage = parameter(help="none: every point is a plot; ideal: each target is seen as one point")
+
+
+WITHOUT_CLUSTERING = {name: WithoutClustering(name=name) for name in get_args(Stage)}
+"""By their names, which no entry can have."""
+
+
+def clustering_entry_model(declared: type[Clustering]) -> type[ClusteringEntry]:
+    """Return the model of the entries of one mode of clustering."""
+    mode = declared.model_fields["mode"].default
+    kind: Any = Literal[mode]
+    bases: Any = (ClusteringEntry, declared)
+    return cast(
+        "type[ClusteringEntry]",
+        create_model(
+            f"{declared.__name__}Entry",
+            __base__=bases,
+            __doc__=declared.__doc__,
+            __cls_kwargs__=_told_by_name("mode", mode),
+            mode=(kind, with_default(declared, "mode", mode)),
+        ),
+    )
+
+
+def _which_mode(entry: Any) -> str | None:
+    return _named(entry, "mode")
+
+
+def _told_by_name(field: str, name: str) -> dict[str, Any]:
+    """Return what a schema needs: without the field the name says which it is."""
+    return {
+        "json_schema_extra": {
+            "anyOf": [{"required": [field]}, {"properties": {"name": {"const": name}}}],
+        }
+    }
+
+
+def _named(entry: Any, field: str) -> str | None:
+    if isinstance(entry, Mapping):
+        named = entry.get(field, entry.get("name"))
+        return named if isinstance(named, str) else None
+    return getattr(entry, field, None)
+
+
+if TYPE_CHECKING:
+    Entry = InitiatorEntry
+    AnyClusteringEntry = ClusteringEntry
+else:
+    Entry = Annotated[
+        Union[tuple(Annotated[entry_model(known), Tag(known.name)] for known in initiators().values())],  # noqa: UP007
+        Discriminator(_which),
+    ]
+    AnyClusteringEntry = Annotated[
+        Union[tuple(Annotated[clustering_entry_model(known), Tag(mode)] for mode, known in MODES.items())],  # noqa: UP007
+        Discriminator(_which_mode),
+    ]

@@ -1,0 +1,111 @@
+"""Targets: where they are, how they move, how long they live."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from algorithms.parameters import (
+    Count,
+    Declared,
+    Dimension,
+    Name,
+    NotNegative,
+    Number,
+    Positive,
+    Whole,
+    parameter,
+)
+from scenarios.sensors import Place
+
+
+class Extension(Declared):
+    """How a target looks to a sensor of high resolution: points, gaussian about its place and speed."""
+
+    points: Annotated[Count, Field(le=100_000)] = parameter(
+        24, dimension=Dimension.COUNT, help="number of its points in a scan"
+    )
+    range_spread: NotNegative = parameter(
+        dimension=Dimension.LENGTH, help="standard deviation of its points in range"
+    )
+    doppler_spread: NotNegative = parameter(
+        dimension=Dimension.SPEED, help="standard deviation of its points in radial speed"
+    )
+    correlation: Annotated[Number, Field(ge=-1, le=1)] = parameter(
+        0.0, help="of range and radial speed of its points, -1 to 1"
+    )
+    amplitude: Positive = parameter(
+        1.0, help="parameter σ of the Rayleigh law of its amplitudes; that of clutter is 1"
+    )
+
+
+class Target(Declared):
+    """A target of constant velocity."""
+
+    name: Name | None = parameter(None, help="what it is called in tables")
+    position: Place = parameter(
+        dimension=Dimension.LENGTH, help="[x, y, z] in the scan in which it appears; z in space only"
+    )
+    velocity: Place = parameter(
+        dimension=Dimension.SPEED, help="[vx, vy, vz], in the unit of length a second; vz in space only"
+    )
+    birth: Whole = parameter(
+        0, dimension=Dimension.COUNT, help="the first scan in which it is there, by the scenario's interval"
+    )
+    death: Whole | None = parameter(
+        None, dimension=Dimension.COUNT, help="the last scan in which it is there; none: to the end"
+    )
+    spread: NotNegative | tuple[NotNegative, NotNegative] | tuple[NotNegative, NotNegative, NotNegative] = (
+        parameter(
+            0.0,
+            dimension=Dimension.LENGTH,
+            help="how far from `position` it may begin, uniform from draw to draw, one number or one an axis",
+        )
+    )
+    extended: Extension | None = parameter(
+        None, help="its extent to sensors of high resolution; none: one point a scan"
+    )
+
+    @model_validator(mode="after")
+    def _dies_after_birth(self) -> Self:
+        if self.death is not None and self.death < self.birth:
+            raise ValueError(
+                f"death {self.death} is given with birth {self.birth}; a target's last scan must not be "
+                "before its first"
+            )
+        for name, given in (("velocity", self.velocity), ("spread", self.spread)):
+            if isinstance(given, tuple) and len(given) != len(self.position):
+                raise ValueError(
+                    f"{name} has {len(given)} numbers and position {len(self.position)}; "
+                    "give as many of each: 2 in the plane, 3 in space"
+                )
+        return self
+
+    @property
+    def stands_still(self) -> bool:
+        """Whether it has no line in the plane (x, y)."""
+        return not any(self.velocity[:2])
+
+    @property
+    def spread_axes(self) -> tuple[float, ...]:
+        """How far from `position` it may begin, on each axis."""
+        return self.spread if isinstance(self.spread, tuple) else (self.spread,) * len(self.position)
+
+    def lifetime(self, interval: float) -> tuple[float, float]:
+        """Return the times of the first and the last scan in which it is there; the last may be infinite."""
+        return self.birth * interval, math.inf if self.death is None else self.death * interval
+
+    def ends(self, interval: float, last: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Return where its path begins and ends within a batch, as it is without `spread`.
+
+        Parameters
+        ----------
+        interval : time between scans, in which birth and death are counted
+        last : time of the batch's last scan
+        """
+        begin, end = self.lifetime(interval)
+        elapsed = max(0.0, min(end, last) - begin)
+        moved = zip(self.position, self.velocity, strict=True)
+        return self.position, tuple(place + speed * elapsed for place, speed in moved)
