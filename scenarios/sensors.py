@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from algorithms.context import Box
@@ -19,6 +21,7 @@ from algorithms.parameters import (
     Positive,
     parameter,
 )
+from scenarios.conversion import converted, polar
 
 
 def _rising(bounds: tuple[float, float]) -> tuple[float, float]:
@@ -194,6 +197,10 @@ class PolarSensor(Sensor):
     def station(self) -> tuple[float, ...]:
         """Where it stands, with as many numbers as it measures."""
         return (*self.position, 0.0) if len(self.position) < self.dimensions else self.position
+
+    def covariance(self, position: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the covariance of the noise of plots at positions of shape (n, d), as (n, d, d)."""
+        return converted(polar(position - np.array(self.station)), np.array(self.sigmas))[1]
 
     @property
     def sector_box(self) -> Box:

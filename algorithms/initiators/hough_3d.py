@@ -225,13 +225,13 @@ def _lines(position, covariance, around, cell, most, least, usable):  # type: ig
         if best < least:
             return
         found = 0
-        for plot in left:
+        for still in left:
             for axis in range(3):
-                place[axis] = position[plot, axis] - middle[axis]
+                place[axis] = position[still, axis] - middle[axis]
             first, second = across(around[chosen], place)
             # The cell and half of its neighbours: the line may lie at its edge.
             if abs(first / cell - row) < 1.0 and abs(second / cell - column) < 1.0:
-                rows[found] = plot
+                rows[found] = still
                 found += 1
         _line_through(position, rows, found, centre, direction)
         found = _near_line(position, left, centre, direction, cell, rows)
@@ -244,9 +244,9 @@ def _lines(position, covariance, around, cell, most, least, usable):  # type: ig
         for k in range(found):
             usable[rows[k]] = True
         remaining, number = np.empty(len(left), np.int64), 0
-        for plot in left:
-            if not usable[plot]:
-                remaining[number] = plot
+        for still in left:
+            if not usable[still]:
+                remaining[number] = still
                 number += 1
         left = remaining[:number]
         if number < least:

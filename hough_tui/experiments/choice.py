@@ -9,7 +9,7 @@ from algorithms.errors import RequestError
 from algorithms.parameters import FieldError, Path, replaced, unknown
 from scenarios.entries import WITHOUT_CLUSTERING, ClusteringEntry, WithoutClustering
 from scenarios.marked_yaml import read
-from scenarios.model import Scenario, ScenarioSet
+from scenarios.model import InitiatorEntry, Scenario, ScenarioSet
 from scenarios.sweeps import place
 
 
@@ -84,3 +84,18 @@ def seed_of(given: ScenarioSet, scenario: Scenario) -> int:
         if scenario.name in (found.name for found in given.chosen_scenarios(experiment)):
             return experiment.seed
     return 1
+
+
+def ignores_z(entry: InitiatorEntry, scenario: Scenario) -> bool:
+    """Return whether an initiator works in the plane (x, y) of a scenario in space."""
+    return entry.algorithm.dimensions < scenario.dimensions
+
+
+def why_not_in_plane(entry: InitiatorEntry, scenario: Scenario) -> str | None:
+    """Return why an initiator in space cannot work on a scenario in the plane; None where it can."""
+    if entry.algorithm.dimensions <= scenario.dimensions:
+        return None
+    return (
+        f"{entry.initiator} works in space, and {scenario.name} lies in the plane: it cannot run there; give "
+        "sensor and targets a z"
+    )

@@ -95,10 +95,12 @@ def _compared(table: PublishedTable, entry: Entry, columns: Columns) -> dict[str
         interval = mean_interval if measure.is_share else normal_interval
         test = is_consistent_rate if measure.is_share else is_consistent_mean
         told["measured"] = float(values.mean())
-        told["ci95"] = list(interval(values))
+        low, high = interval(values)
+        # The normal distribution knows no bound; nothing that is compared can be negative.
+        told["ci95"] = [max(0.0, low), high]
         if measure.is_root:
             told["measured"] = math.sqrt(values.mean())
-            told["ci95"] = [math.sqrt(max(0.0, end)) for end in interval(values)]
+            told["ci95"] = [math.sqrt(end) for end in told["ci95"]]
         if entry.published is not None and entry.is_judged:
             told["consistent"] = test(entry.published, table.trials, table.rounding, values)
     return told

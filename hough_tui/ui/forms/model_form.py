@@ -23,9 +23,11 @@ from hough_tui.ui.forms.edits import value_in
 from hough_tui.ui.forms.fields import FieldDescription, Kind, described, ordered, walk
 from hough_tui.ui.forms.list_table import ListTable
 from hough_tui.ui.forms.numbers import Unreadable
+from hough_tui.ui.forms.sensor_table import SensorTable
 from hough_tui.ui.forms.target_table import TargetTable
 from hough_tui.ui.forms.value_field import ValueField
 from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited, FieldUnreadable
+from scenarios.sensors import CartesianSensor
 from scenarios.targets import Target
 
 TWO_COLUMNS = 100
@@ -63,7 +65,10 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
         Binding("pageup", "page_up", "Page up", show=False, id="form.page_up"),
     ]
 
-    TABLES: ClassVar[dict[type[BaseModel], type[ListTable]]] = {Target: TargetTable}
+    TABLES: ClassVar[dict[type[BaseModel], type[ListTable]]] = {
+        Target: TargetTable,
+        CartesianSensor: SensorTable,
+    }
     """The tables that say more of their elements than the declaration does."""
 
     def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:

@@ -25,7 +25,8 @@ class Welcome(ModalScreen[Any]):
         background: $surface; border: round $primary; }
     Welcome .title { text-style: bold; }
     Welcome .text { color: $text-muted; margin-bottom: 1; }
-    Welcome OptionList { height: auto; max-height: 60vh; border: none; background: $surface; }
+    Welcome OptionList { height: auto; max-height: 45vh; background: $surface; }
+    Welcome OptionList, Welcome OptionList:focus { border: none; padding: 0; }
     Welcome Button { margin: 1 0 0 1; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
