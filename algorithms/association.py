@@ -19,6 +19,10 @@ REFINEMENTS = 3
 """How often plots are chosen anew about the motion fitted to the plots chosen before."""
 
 
+LEAST_SHARE = 1e-9
+"""The least variance of a plot, as a share of the greatest of its batch."""
+
+
 @kernel
 def _motion(along, time, scan, gate):  # type: ignore[no-untyped-def]
     """Return position (at time 0) and speed along a line that the most scans agree with.
@@ -198,6 +202,9 @@ def _most_scans(chunk: PlotChunk) -> int:
 def with_states(plots: Plots, found: TrackChunk, dimensions: int = 2) -> Tracks:
     """Return the tracks of one batch with their plots and least-squares states.
 
+    In space the covariances of the plots are the weights, where they are known: plots of a radar
+    are far better along the range than across it.
+
     Parameters
     ----------
     plots : the batch
@@ -208,7 +215,10 @@ def with_states(plots: Plots, found: TrackChunk, dimensions: int = 2) -> Tracks:
     time = plots.first_time
     held = found.plots >= 0
     rows = np.where(held, found.plots, 0)
-    position, velocity = _least_squares(plots, rows, held, time, dimensions)
+    if dimensions == 3 and plots.covariance is not None:
+        position, velocity = _weighted_least_squares(plots, plots.covariance, rows, held, time)
+    else:
+        position, velocity = _least_squares(plots, rows, held, time, dimensions)
     theta, rho = line_through(position[:, :2], velocity[:, :2])
     return Tracks(
         found.theta,
@@ -220,6 +230,7 @@ def with_states(plots: Plots, found: TrackChunk, dimensions: int = 2) -> Tracks:
         theta,
         rho,
         time,
+        {name: int(counted[0]) for name, counted in found.effort.items()},
     )
 
 
@@ -242,3 +253,30 @@ def _least_squares(
     still = np.isnan(velocity[:, 0])
     position = mean_place - np.where(still[:, None], 0.0, velocity * mean_time[:, None])
     return position, velocity
+
+
+def _weighted_least_squares(
+    plots: Plots,
+    covariance: NDArray[np.float64],
+    rows: NDArray[np.int64],
+    held: NDArray[np.bool_],
+    time: float,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return positions and velocities, float64 (m, 3) each, by generalised least squares."""
+    states = np.full((len(rows), 2, 3), np.nan)
+    # A sensor that does not err at all would be given an infinite weight.
+    least = LEAST_SHARE * max(float(np.trace(covariance, axis1=1, axis2=2).max(initial=0.0)), 1e-300)
+    for track, (own, mask) in enumerate(zip(rows, held, strict=True)):
+        chosen = own[mask]
+        if not len(chosen):
+            continue
+        elapsed = plots.time[chosen] - time
+        powers = 2 if np.ptp(elapsed) > 0.0 else 1
+        start = plots.position[chosen[0]]
+        weight = np.linalg.inv((covariance[chosen] + least * np.eye(3)) / least)
+        design = elapsed[:, None] ** np.arange(powers)
+        normal = np.einsum("ki,kj,kab->iajb", design, design, weight).reshape(3 * powers, 3 * powers)
+        right = np.einsum("ki,kab,kb->ia", design, weight, plots.position[chosen] - start).ravel()
+        states[track, :powers] = np.linalg.solve(normal, right).reshape(powers, 3)
+        states[track, 0] += start
+    return states[:, 0], states[:, 1]

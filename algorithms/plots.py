@@ -39,7 +39,9 @@ class Plots:
     def chunk(self) -> PlotChunk:
         """Return the chunk that holds this batch alone."""
         offsets = np.array([0, len(self)], dtype=np.int64)
-        return PlotChunk(self.scan, self.time, self.position, offsets, self.covariance)
+        return PlotChunk(
+            self.scan, self.time, self.position, offsets, self.covariance, self.amplitude, self.doppler
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +50,7 @@ class PlotChunk:
 
     Attributes
     ----------
-    scan, time, position, covariance : as in `Plots`, sorted by trial, then by scan
+    scan, time, position, covariance, amplitude, doppler : as in `Plots`, sorted by trial, then by scan
     offsets : int64 (trials + 1,), where each trial's plots begin, and the end of the last
     """
 
@@ -57,6 +59,8 @@ class PlotChunk:
     position: NDArray[np.float64]
     offsets: NDArray[np.int64] = field(default_factory=lambda: np.zeros(1, dtype=np.int64))
     covariance: NDArray[np.float64] | None = None
+    amplitude: NDArray[np.float64] | None = None
+    doppler: NDArray[np.float64] | None = None
 
     @property
     def trials(self) -> int:
@@ -71,8 +75,14 @@ class PlotChunk:
     def trial(self, index: int) -> Plots:
         """Return the plots of one trial (views, not copies)."""
         rows = slice(self.offsets[index], self.offsets[index + 1])
-        covariance = None if self.covariance is None else self.covariance[rows]
-        return Plots(self.scan[rows], self.time[rows], self.position[rows], covariance=covariance)
+        return Plots(
+            self.scan[rows],
+            self.time[rows],
+            self.position[rows],
+            _part(self.amplitude, rows),
+            _part(self.doppler, rows),
+            _part(self.covariance, rows),
+        )
 
     def chosen(self, kept: NDArray[np.bool_]) -> PlotChunk:
         """Return the chunk with some of its plots only; a trial may be left without any.
@@ -82,7 +92,16 @@ class PlotChunk:
         kept : bool (n,)
         """
         before = np.concatenate([[0], np.cumsum(kept)]).astype(np.int64)
-        covariance = None if self.covariance is None else self.covariance[kept]
         return PlotChunk(
-            self.scan[kept], self.time[kept], self.position[kept], before[self.offsets], covariance
+            self.scan[kept],
+            self.time[kept],
+            self.position[kept],
+            before[self.offsets],
+            _part(self.covariance, kept),
+            _part(self.amplitude, kept),
+            _part(self.doppler, kept),
         )
+
+
+def _part(column: NDArray[np.float64] | None, rows: slice | NDArray[np.bool_]) -> NDArray[np.float64] | None:
+    return None if column is None else column[rows]

@@ -24,6 +24,7 @@ class Tracks:
     fitted_theta, fitted_rho : float64 (m,), the line of that state in the plane (x, y); NaN
         where it is open
     time : seconds, the time of the batch's first scan
+    effort : what the initiator counted of its work by name, such as pairs of plots
     """
 
     theta: NDArray[np.float64]
@@ -35,6 +36,7 @@ class Tracks:
     fitted_theta: NDArray[np.float64]
     fitted_rho: NDArray[np.float64]
     time: float
+    effort: Mapping[str, int] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.theta)
@@ -51,6 +53,7 @@ class Tracks:
             self.fitted_theta[order],
             self.fitted_rho[order],
             self.time,
+            self.effort,
         )
 
 

@@ -9,6 +9,7 @@ import io
 import statistics
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from measure import verdict
@@ -20,6 +21,7 @@ from algorithms.hough.grid import Grid
 from algorithms.hough.voting import accumulate
 from hough_tui.ui.drawing.axes import Frame, framed
 from hough_tui.ui.drawing.braille import Canvas
+from hough_tui.ui.drawing.graticule import Sector
 from hough_tui.ui.drawing.halfblock import flattened, picture
 from hough_tui.ui.drawing.palette import DARK, ink
 from hough_tui.ui.drawing.sampling import levels, pooled, samplings
@@ -28,7 +30,7 @@ from hough_tui.ui.widgets.heatmap_scene import HeatmapScene
 from hough_tui.ui.widgets.plane_scene import PlaneScene, PlaneTrack, painted, styles
 
 HEATMAP_BOUND, PLANE_BOUND = 5.0, 3.0
-"""Milliseconds of a frame of 120 × 40 cells."""
+"""Milliseconds of a frame of 120 × 40 cells; with rings, a plane is bound as a heat-map is."""
 
 BYTES_BOUND = 70_000
 
@@ -108,6 +110,9 @@ def main() -> None:
     large = accumulate(position, Grid(1800, 20_000, -150.0, 0.03)).votes
     noise = random.random((90, 1000))
     scene = plots(random, 1000, 20)
+    # Two sensors, one of which sees all round.
+    sensors = (Sector((50.0, 50.0), 1.0, 60.0, (0.0, 360.0)), Sector((0.0, 0.0), 1.0, 120.0, (0.0, 90.0)))
+    polar = replace(scene, sectors=sensors)
     for width, height in SIZES:
         contenders = {
             "heat-map, 90 × 1000 of the course report": lambda w=width, h=height: heatmap(report, w, h),
@@ -116,6 +121,7 @@ def main() -> None:
             "heat-map, 1800 × 20000": lambda w=width, h=height: heatmap(large, w, h),
             "dots, 1,000 points and 20 lines": lambda w=width, h=height: dots(scene, w, h),
             "plane, 1,000 plots and 20 tracks": lambda w=width, h=height: plane(scene, w, h),
+            "the same plane with rings of two sensors": lambda w=width, h=height: plane(polar, w, h),
         }
         print(f"{width} × {height}")
         for name, call in contenders.items():

@@ -7,6 +7,7 @@ from typing import Protocol
 
 from algorithms.errors import RequestError
 from algorithms.parameters import FieldError, Problem, unknown
+from scenarios.entries import WITHOUT_CLUSTERING
 from scenarios.experiments import Experiment, InitiationExperiment
 from scenarios.model import ScenarioSet
 from scenarios.sweeps import SINGULAR, points
@@ -28,7 +29,10 @@ def inconsistencies(given: ScenarioSet) -> Iterator[Problem]:
         return
     for index, experiment in enumerate(given.experiments):
         path = ("experiments", index)
-        found = [*_unknown_names(given, experiment)] or [*_unfit_criterion(given, experiment)]
+        found = [*_unknown_names(given, experiment)] or [
+            *_unfit_criterion(given, experiment),
+            *_unfit_clusterings(given, experiment),
+        ]
         if not found:
             try:
                 for _ in points(given, experiment):
@@ -55,11 +59,17 @@ def _repeated_names(given: ScenarioSet) -> Iterator[Problem]:
                 )
                 yield Problem((part, index, "name"), message)
             first.setdefault(item.name, index)
+    for index, entry in enumerate(given.clusterings):
+        if entry.name in WITHOUT_CLUSTERING:
+            message = f"'{entry.name}' says in experiments that points are not clustered; take another name"
+            yield Problem(("clusterings", index, "name"), message)
 
 
 def _unknown_names(given: ScenarioSet, experiment: Experiment) -> Iterator[Problem]:
-    for part in experiment.PARTS:
+    for part in experiment.parts:
         names, known = getattr(experiment, part) or (), [found.name for found in getattr(given, part)]
+        if part == "clusterings" and isinstance(experiment, InitiationExperiment):
+            known += WITHOUT_CLUSTERING
         for index, name in enumerate(names):
             if name not in known:
                 yield Problem((part, index), unknown(name, known, SINGULAR[part]))
@@ -80,3 +90,22 @@ def _unfit_criterion(given: ScenarioSet, experiment: Experiment) -> Iterator[Pro
                     "{plots: 3}"
                 )
                 yield Problem(("criterion",), message)
+
+
+def _unfit_clusterings(given: ScenarioSet, experiment: Experiment) -> Iterator[Problem]:
+    """Yield what is wrong with clusterings between the draw and the initiators."""
+    if not isinstance(experiment, InitiationExperiment):
+        return
+    for scenario in given.chosen_scenarios(experiment):
+        if scenario.is_resolved == (experiment.clusterings is None):
+            message = (
+                f"{scenario.name} has sensors of high resolution: give how its points become plots, names of "
+                "clusterings, none (every point is a plot) or ideal (each target is one point)"
+                if scenario.is_resolved
+                else f"{scenario.name} has no sensor of high resolution, so no points: leave it out"
+            )
+            yield Problem(("clusterings",), message, on_key=not scenario.is_resolved)
+    for index, entry in enumerate(given.chosen(experiment, "clusterings")):
+        if getattr(entry, "mode", None) == "k-means":
+            message = f"{entry.name} is told how many targets there are, which no sensor knows: leave it out"
+            yield Problem(("clusterings", index), message)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, cast, get_args
 
 from pydantic import Discriminator, Tag, create_model
 
@@ -98,6 +98,19 @@ class ClusteringEntry(Declared):
     def resolved_on(self, scene: Scene) -> Clustering:
         """Return the parameters with every `auto` worked out for a scene."""
         return self.parameters.resolved(len(scene.targets))
+
+
+Stage = Literal["none", "ideal"]
+
+
+class WithoutClustering(Declared):
+    """What may stand where a scenario's points would be clustered before initiation."""
+
+    name: Stage = parameter(help="none: every point is a plot; ideal: each target is seen as one point")
+
+
+WITHOUT_CLUSTERING = {name: WithoutClustering(name=name) for name in get_args(Stage)}
+"""By their names, which no entry can have."""
 
 
 def clustering_entry_model(declared: type[Clustering]) -> type[ClusteringEntry]:

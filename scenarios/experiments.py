@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
@@ -86,14 +86,7 @@ class MatchCriterion(Declared):
 
 
 class Experiment(Declared):
-    """What every kind of experiment has: so many draws of what it runs on, over swept values.
-
-    Attributes
-    ----------
-    PARTS : the lists of a set from which it takes elements by name: what is drawn, and what runs on it
-    """
-
-    PARTS: ClassVar[tuple[str, ...]] = ()
+    """What every kind of experiment has: so many draws of what it runs on, over swept values."""
 
     name: Name = parameter(help="what it is called in the set")
     kind: str = parameter("initiation", help="what is tried: initiators on scenarios, clusterings on scenes")
@@ -113,11 +106,14 @@ class Experiment(Declared):
         """Return whether data are of this kind of experiment; without a kind they are of initiation."""
         return bool(experiment_kind(data) == cls.model_fields["kind"].default)
 
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The lists of a set from which it takes elements: first what is drawn, last what runs on it."""
+        raise NotImplementedError
+
 
 class InitiationExperiment(Experiment):
     """Which initiators run on which scenarios, and what counts as success."""
-
-    PARTS = ("scenarios", "initiators")
 
     kind: Literal["initiation"] = with_default(Experiment, "kind", "initiation")
     scenarios: list[str] | None = parameter(
@@ -126,11 +122,25 @@ class InitiationExperiment(Experiment):
     initiators: list[str] | None = parameter(
         None, min_length=1, help="names of initiator entries; none: all of the set"
     )
+    clusterings: list[str] | None = parameter(
+        None,
+        min_length=1,
+        help="how points become plots, for sensors of high resolution: names of clustering entries, `none` "
+        "(every point is a plot), `ideal` (each target is one point)",
+    )
     control: Flag = parameter(
         True,
         help="whether the same draws without the targets are scored too, to show what chance alone gives",
     )
     criterion: MatchCriterion = parameter(help="when a track matches a target")
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The lists of a set from which it takes elements by name."""
+        return ("scenarios", "initiators") if self.clusterings is None else INITIATION_OF_POINTS
+
+
+INITIATION_OF_POINTS = ("scenarios", "clusterings", "initiators")
 
 
 class ClusteringExperiment(Experiment):
@@ -139,13 +149,16 @@ class ClusteringExperiment(Experiment):
     # Without its kind it is no such experiment, which its default does not say.
     model_config = ConfigDict(json_schema_extra={"required": ["name", "kind"]})
 
-    PARTS = ("scenes", "clusterings")
-
     kind: Literal["clustering"] = with_default(Experiment, "kind", "clustering")
     scenes: list[str] | None = parameter(None, min_length=1, help="names of scenes; none: all of the set")
     clusterings: list[str] | None = parameter(
         None, min_length=1, help="names of clustering entries; none: all of the set"
     )
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The lists of a set from which it takes elements by name."""
+        return ("scenes", "clusterings")
 
 
 def experiment_kind(given: Any) -> Any:

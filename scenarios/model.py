@@ -11,7 +11,7 @@ from algorithms.context import Box, Context, Unit
 from algorithms.parameters import Count, Declared, Dimension, Name, Positive, missing_either, parameter
 from scenarios.clutter import MOST_PLOTS, AnyClutter, Clutter, Region
 from scenarios.conversion import converted
-from scenarios.entries import AnyClusteringEntry, Entry, InitiatorEntry
+from scenarios.entries import WITHOUT_CLUSTERING, AnyClusteringEntry, Entry, InitiatorEntry
 from scenarios.experiments import AnyExperiment, Experiment
 from scenarios.scenes import Scene
 from scenarios.sensors import AnySensor, CartesianSensor, PolarSensor
@@ -61,6 +61,26 @@ class Scenario(Declared):
         return self
 
     @model_validator(mode="after")
+    def _is_resolved_or_not(self) -> Self:
+        """Refuse extended targets that no sensor resolves, and sensors that do not all give points."""
+        resolved = [getattr(sensor, "resolution", None) is not None for sensor in self.sensors]
+        if any(resolved) and not all(resolved):
+            raise ValueError("some sensors have a resolution and some have none; make them alike")
+        for index, target in enumerate(self.targets):
+            if target.extended is not None and not any(resolved):
+                raise ValueError(
+                    f"targets[{index}] is extended, and no sensor tells its points apart; give the sensor a "
+                    "resolution, or leave extended out"
+                )
+        for index, source in enumerate(self.clutter):
+            if any(resolved) and source.over not in ("volume", "sector"):
+                raise ValueError(
+                    f"clutter[{index}] is over: {source.over}, and a sensor with a resolution sees its "
+                    "sector alone; give over: sector or over: volume"
+                )
+        return self
+
+    @model_validator(mode="after")
     def _is_flat_or_not(self) -> Self:
         """Refuse parts that lie in the plane beside others that lie in space."""
         said = [("region", None if self.region is None else len(self.region.box.lower))]
@@ -85,6 +105,11 @@ class Scenario(Declared):
     def sensors(self) -> list[AnySensor]:
         """All sensors."""
         return [self.sensor, *self.further_sensors]
+
+    @property
+    def is_resolved(self) -> bool:
+        """Whether its sensors have a high resolution, so that a target is many points."""
+        return isinstance(self.sensor, PolarSensor) and self.sensor.resolution is not None
 
     @property
     def dimensions(self) -> int:
@@ -128,8 +153,9 @@ class Scenario(Declared):
 
     @property
     def expected_plots(self) -> float:
-        """The number of plots that a batch holds at the most, clutter as expected."""
-        return self.expected_clutter + self.scans * len(self.sensors) * len(self.targets)
+        """The number of plots, or points, that a batch holds at the most, clutter as expected."""
+        each = sum(target.extended.points if target.extended is not None else 1 for target in self.targets)
+        return self.expected_clutter + self.scans * len(self.sensors) * each
 
     def area(self, source: Clutter) -> Box:
         """Return where the plots of a source of clutter lie."""
@@ -227,12 +253,12 @@ class ScenarioSet(Declared):
         ----------
         part : the list, such as `scenarios`; an experiment that names none of it takes all
         """
-        if part not in experiment.PARTS:
+        if part not in experiment.parts:
             return []
         listed, names = getattr(self, part), getattr(experiment, part)
         if names is None:
             return list(listed)
-        known = {element.name: element for element in listed}
+        known = {**WITHOUT_CLUSTERING, **{element.name: element for element in listed}}
         return [known[name] for name in names]
 
     def chosen_scenarios(self, experiment: Experiment) -> list[Scenario]:

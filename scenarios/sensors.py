@@ -6,10 +6,13 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from algorithms.context import Box
 from algorithms.parameters import (
+    Count,
     Declared,
     Dimension,
     Fraction,
@@ -18,6 +21,7 @@ from algorithms.parameters import (
     Positive,
     parameter,
 )
+from scenarios.conversion import converted, polar
 
 
 def _rising(bounds: tuple[float, float]) -> tuple[float, float]:
@@ -83,6 +87,28 @@ class CartesianSensor(Sensor):
         return None
 
 
+class Resolution(Declared):
+    """What a sensor of high resolution tells apart: targets are many points, not one plot."""
+
+    range_cell: Positive = parameter(dimension=Dimension.LENGTH, help="size of a range cell")
+    beam_width_deg: Annotated[Positive, Field(le=360)] = parameter(
+        dimension=Dimension.ANGLE,
+        help="width of the beam, degrees: the points of a dwell have the azimuth of its centre",
+    )
+    doppler_cell: Positive = parameter(
+        dimension=Dimension.SPEED, help="size of a Doppler cell, as radial speed"
+    )
+    doppler_cells: Annotated[Count, Field(ge=2, le=1_000_000)] = parameter(
+        dimension=Dimension.COUNT,
+        help="number of Doppler cells; Doppler folds: speeds that differ by so many cells look alike",
+    )
+
+    @property
+    def span(self) -> float:
+        """The unambiguous span of radial speed; it lies about 0."""
+        return self.doppler_cell * self.doppler_cells
+
+
 class PolarSensor(Sensor):
     """A sensor that measures range, azimuth and, in space, elevation with independent gaussian noise.
 
@@ -116,12 +142,17 @@ class PolarSensor(Sensor):
         dimension=Dimension.ANGLE,
         help="[lowest, highest] elevation that it sees, degrees up from the horizon; none: -90 to 90",
     )
+    resolution: Resolution | None = parameter(
+        None, help="what a sensor of high resolution tells apart; none: a target is one plot"
+    )
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
         if self.azimuth_deg[1] - self.azimuth_deg[0] > 360.0:
             span = self.azimuth_deg[1] - self.azimuth_deg[0]
             raise ValueError(f"azimuth_deg spans {span:g}°; it may span 360° at the most")
+        if self.resolution is not None and self.sigma_elevation_deg is not None:
+            raise ValueError("resolution is given with sigma_elevation_deg; it needs a sensor in the plane")
         if self.sigma_elevation_deg is None:
             if self.elevation_deg is not None:
                 raise ValueError(
@@ -137,10 +168,20 @@ class PolarSensor(Sensor):
         return 2 if self.sigma_elevation_deg is None else 3
 
     @property
-    def sigmas(self) -> tuple[float, ...]:
-        """Standard deviations on range, azimuth and, in space, elevation; radians."""
+    def noise(self) -> tuple[float, ...]:
+        """Standard deviations of the noise on range, azimuth and, in space, elevation; radians."""
         noise = (self.sigma_range, math.radians(self.sigma_azimuth_deg))
         return noise if self.sigma_elevation_deg is None else (*noise, math.radians(self.sigma_elevation_deg))
+
+    @property
+    def sigmas(self) -> tuple[float, ...]:
+        """Standard deviations of its plots: of the noise and of rounding to cell and beam; radians."""
+        if self.resolution is None:
+            return self.noise
+        steps = (self.resolution.range_cell, math.radians(self.resolution.beam_width_deg))
+        # A value that is rounded to a cell is off by an even distribution over the cell.
+        parts = zip(self.noise, steps, strict=True)
+        return tuple(math.hypot(sigma, step / math.sqrt(12.0)) for sigma, step in parts)
 
     @property
     def limits(self) -> tuple[tuple[float, float], ...]:
@@ -156,6 +197,10 @@ class PolarSensor(Sensor):
     def station(self) -> tuple[float, ...]:
         """Where it stands, with as many numbers as it measures."""
         return (*self.position, 0.0) if len(self.position) < self.dimensions else self.position
+
+    def covariance(self, position: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the covariance of the noise of plots at positions of shape (n, d), as (n, d, d)."""
+        return converted(polar(position - np.array(self.station)), np.array(self.sigmas))[1]
 
     @property
     def sector_box(self) -> Box:

@@ -74,7 +74,7 @@ def points(given: ScenarioSet, experiment: Experiment) -> Iterator[Point]:
         Where a swept key names no numeric field, or a value is not allowed; its path begins
         at the experiment.
     """
-    parts: Elements = {SINGULAR[part]: given.chosen(experiment, part) for part in experiment.PARTS}
+    parts: Elements = {SINGULAR[part]: given.chosen(experiment, part) for part in experiment.parts}
     total = 1
     for several in (*parts.values(), *experiment.sweep.values()):
         total *= len(several)

@@ -3,12 +3,42 @@
 from __future__ import annotations
 
 import math
-from typing import Self
+from typing import Annotated, Self
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
-from algorithms.parameters import Declared, Dimension, Name, NotNegative, Whole, parameter
+from algorithms.parameters import (
+    Count,
+    Declared,
+    Dimension,
+    Name,
+    NotNegative,
+    Number,
+    Positive,
+    Whole,
+    parameter,
+)
 from scenarios.sensors import Place
+
+
+class Extension(Declared):
+    """How a target looks to a sensor of high resolution: points, gaussian about its place and speed."""
+
+    points: Annotated[Count, Field(le=100_000)] = parameter(
+        24, dimension=Dimension.COUNT, help="number of its points in a scan"
+    )
+    range_spread: NotNegative = parameter(
+        dimension=Dimension.LENGTH, help="standard deviation of its points in range"
+    )
+    doppler_spread: NotNegative = parameter(
+        dimension=Dimension.SPEED, help="standard deviation of its points in radial speed"
+    )
+    correlation: Annotated[Number, Field(ge=-1, le=1)] = parameter(
+        0.0, help="of range and radial speed of its points, -1 to 1"
+    )
+    amplitude: Positive = parameter(
+        1.0, help="parameter σ of the Rayleigh law of its amplitudes; that of clutter is 1"
+    )
 
 
 class Target(Declared):
@@ -33,6 +63,9 @@ class Target(Declared):
             dimension=Dimension.LENGTH,
             help="how far from `position` it may begin, uniform from draw to draw, one number or one an axis",
         )
+    )
+    extended: Extension | None = parameter(
+        None, help="its extent to sensors of high resolution; none: one point a scan"
     )
 
     @model_validator(mode="after")

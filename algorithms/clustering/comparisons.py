@@ -62,6 +62,8 @@ def compared_sets(points: Points, parameters: Dbscan | KMeans) -> Sets:
                 continue
             own = scaled[first:end]
             if isinstance(parameters, Dbscan):
+                if len(own) < parameters.least_points:
+                    continue  # too few for a core, and so for a cluster
                 model = learn.DBSCAN(eps=parameters.eps, min_samples=parameters.least_points)
             else:
                 number, different = _number(parameters), len(np.unique(own, axis=0))

@@ -12,6 +12,7 @@ from algorithms.context import Context
 from algorithms.hough.voting import Accumulator
 from algorithms.parameters import Parameters
 from algorithms.plots import PlotChunk, Plots
+from algorithms.space.planes import PlaneVotes
 from algorithms.tracks import TrackChunk, Tracks
 
 
@@ -55,6 +56,10 @@ class Initiator(ABC):
 
     def accumulator(self, plots: Plots, context: Context, parameters: Any) -> Accumulator | None:
         """Return the votes of one batch; None for an initiator that has no accumulator."""
+        return None
+
+    def plane_votes(self, plots: Plots, context: Context, parameters: Any) -> PlaneVotes | None:
+        """Return the votes of pairs of plots in three planes; None for an initiator that has none."""
         return None
 
 

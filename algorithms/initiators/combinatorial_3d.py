@@ -6,16 +6,17 @@ import math
 from typing import Annotated, Literal, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from algorithms.compiled import kernel
 from algorithms.context import Context
 from algorithms.parameters import Auto, Count, Dimension, Positive, parameter
-from algorithms.plots import PlotChunk
+from algorithms.plots import PlotChunk, Plots
 from algorithms.space.motion import MOST_FOUND, chi_square_limits, write_track
 from algorithms.space.noise import covariances, in_space
 from algorithms.space.pairs import components, pairs_within_reach
-from algorithms.space.planes import PLANES, confirm, votes_of_pairs
+from algorithms.space.planes import PLANES, PlaneVotes, confirm, votes_of_pairs
 from algorithms.space.tracks import (
     LEAST_PLOTS,
     STEPS,
@@ -79,47 +80,71 @@ class CombinatorialParameters(MotionParameters):
 
 
 @kernel
-def _confirmed_planes(  # type: ignore[no-untyped-def]
+def _votes(  # type: ignore[no-untyped-def]
     position, pairs, groups, station, is_document, width, height, least_votes, planes
 ):
-    """Return the number of planes in which each plot is confirmed."""
-    bits = np.zeros((len(position), 3), np.bool_)
-    theta, distance = np.empty(len(pairs)), np.empty(len(pairs))
-    inside, sorted_in = np.empty(len(pairs), np.int64), np.empty(len(pairs))
-    group_of = np.empty(len(pairs), np.int64)
-    for pair in range(len(pairs)):
+    """Return the votes of each pair in each plane: θ, d and whether it is confirmed."""
+    count = len(pairs)
+    theta, distance = np.empty((len(planes), count)), np.empty((len(planes), count))
+    confirmed = np.zeros((len(planes), count), np.bool_)
+    inside, sorted_in = np.empty(count, np.int64), np.empty(count)
+    own_theta, own_distance, is_own = np.empty(count), np.empty(count), np.empty(count, np.bool_)
+    group_of = np.empty(count, np.int64)
+    for pair in range(count):
         group_of[pair] = groups[pairs[pair, 0]]
     order = np.argsort(group_of, kind="mergesort")
     centre = station.copy()
     first = 0
-    while first < len(order):
+    while first < count:
         end = first
-        while end < len(order) and group_of[order[end]] == group_of[order[first]]:
+        while end < count and group_of[order[end]] == group_of[order[first]]:
             end += 1
         chosen = order[first:end]
-        if len(chosen) >= least_votes:
-            if not is_document:
-                # The mean over the ends of pairs: each plot counts as often as it votes.
-                centre[:] = 0.0
-                for pair in chosen:
-                    for axis in range(3):
-                        both = position[pairs[pair, 0], axis] + position[pairs[pair, 1], axis]
-                        centre[axis] += 0.5 * both / len(chosen)
-            for plane in range(3):
-                votes_of_pairs(
-                    position, pairs, chosen, planes[plane, 0], planes[plane, 1], centre, theta, distance
-                )
-                confirmed = np.zeros(len(chosen), np.bool_)
+        if not is_document:
+            # The mean over the ends of pairs: each plot counts as often as it votes.
+            centre[:] = 0.0
+            for pair in chosen:
+                for axis in range(3):
+                    both = position[pairs[pair, 0], axis] + position[pairs[pair, 1], axis]
+                    centre[axis] += 0.5 * both / len(chosen)
+        for plane in range(len(planes)):
+            votes_of_pairs(
+                position, pairs, chosen, planes[plane, 0], planes[plane, 1], centre, own_theta, own_distance
+            )
+            is_own[: len(chosen)] = False
+            if len(chosen) >= least_votes:
                 confirm(
-                    theta, distance, len(chosen), width, height, is_document, least_votes, confirmed,
+                    own_theta, own_distance, len(chosen), width, height, is_document, least_votes, is_own,
                     inside, sorted_in,
                 )  # fmt: skip
-                for vote in range(len(chosen)):
-                    if confirmed[vote]:
-                        bits[pairs[chosen[vote], 0], plane] = True
-                        bits[pairs[chosen[vote], 1], plane] = True
+            for vote in range(len(chosen)):
+                theta[plane, chosen[vote]], distance[plane, chosen[vote]] = (
+                    own_theta[vote],
+                    own_distance[vote],
+                )
+                confirmed[plane, chosen[vote]] = is_own[vote]
         first = end
-    return bits
+    return theta, distance, confirmed
+
+
+@kernel
+def _groups(count, pairs, is_document):  # type: ignore[no-untyped-def]
+    """Return which plots vote together: those that pairs connect, in the document's mode all."""
+    if is_document:
+        return np.zeros(count, np.int64)
+    return components(count, pairs, np.ones(len(pairs), np.bool_))
+
+
+@kernel
+def _planes_of_plots(count, pairs, confirmed):  # type: ignore[no-untyped-def]
+    """Return the number of planes in which each plot is confirmed."""
+    bits = np.zeros((count, len(confirmed)), np.bool_)
+    for plane in range(len(confirmed)):
+        for pair in range(len(pairs)):
+            if confirmed[plane, pair]:
+                bits[pairs[pair, 0], plane] = True
+                bits[pairs[pair, 1], plane] = True
+    return bits.sum(axis=1)
 
 
 @kernel
@@ -186,16 +211,14 @@ def _combinatorial(  # type: ignore[no-untyped-def]
         pairs, every = pairs_within_reach(place, when, of_scan, noise, slowest, fastest, allowance, STEPS)
         tried[trial], gated[trial] = every, len(pairs)
         if len(pairs) >= least_votes:
-            if is_document:
-                groups = np.zeros(len(place), np.int64)
-            else:
-                groups = components(len(place), pairs, np.ones(len(pairs), np.bool_))
-            bits = _confirmed_planes(
+            groups = _groups(len(place), pairs, is_document)
+            _, _, confirmed = _votes(
                 place, pairs, groups, station, is_document, width, height, least_votes, planes
             )
+            numbers = _planes_of_plots(len(place), pairs, confirmed)
             usable, kept = np.empty(len(place), np.bool_), np.empty(len(pairs), np.bool_)
             for plot in range(len(place)):
-                usable[plot] = bits[plot].sum() >= least_planes
+                usable[plot] = numbers[plot] >= least_planes
             for pair in range(len(pairs)):
                 kept[pair] = usable[pairs[pair, 0]] and usable[pairs[pair, 1]]
             if is_document:
@@ -249,16 +272,49 @@ class Combinatorial3D(SpaceInitiator):
         is_document = parameters.mode == "document"
         noise = covariances(chunk, context)
         deepest = max(context.scans, LEAST_PLOTS)
-        station = np.zeros(3) if context.station is None else np.array(context.station, dtype=float)
         offsets, plots, state, tried, gated, is_full = _combinatorial(
             np.ascontiguousarray(chunk.position), chunk.time, chunk.scan, noise, np.linalg.inv(noise),
-            chunk.offsets, station, PLANES, deepest, parameters.speed_min, parameters.speed_max,
-            0.0 if is_document else parameters.allowance, math.radians(float(parameters.window_deg)),
-            parameters.window_length, parameters.votes, parameters.planes, is_document, parameters.plots,
+            chunk.offsets, _station(context), PLANES, deepest, parameters.speed_min, parameters.speed_max,
+            _allowance(parameters), math.radians(float(parameters.window_deg)), parameters.window_length,
+            parameters.votes, parameters.planes, is_document, parameters.plots,
             chi_square_limits(parameters.confidence, deepest),
         )  # fmt: skip
         effort = {"pairs": tried, "pairs_gated": gated}
         return track_chunk(self.name, offsets, plots, state, effort, is_full=is_full)
+
+    def plane_votes(self, plots: Plots, context: Context, parameters: CombinatorialParameters) -> PlaneVotes:
+        """Return the votes of all pairs that pass the gate.
+
+        d is measured from the middle of the plots that pairs connect; in the document's mode, from
+        the radar.
+
+        Raises
+        ------
+        RequestError
+            Where plots have no z, or their noise is not known.
+        """
+        chunk = plots.chunk()
+        in_space(chunk, self.name)
+        is_document = parameters.mode == "document"
+        position = np.ascontiguousarray(chunk.position)
+        pairs, tried = pairs_within_reach(
+            position, chunk.time, chunk.scan, covariances(chunk, context), parameters.speed_min,
+            parameters.speed_max, _allowance(parameters), STEPS,
+        )  # fmt: skip
+        window = math.radians(float(parameters.window_deg)), float(parameters.window_length)
+        theta, distance, confirmed = _votes(
+            position, pairs, _groups(len(position), pairs, is_document), _station(context), is_document,
+            *window, parameters.votes, PLANES,
+        )  # fmt: skip
+        return PlaneVotes(pairs, theta, distance, confirmed, int(tried), window, int(parameters.votes))
+
+
+def _station(context: Context) -> NDArray[np.float64]:
+    return np.zeros(3) if context.station is None else np.array(context.station, dtype=float)
+
+
+def _allowance(parameters: CombinatorialParameters) -> float:
+    return 0.0 if parameters.mode == "document" else parameters.allowance
 
 
 INITIATOR = Combinatorial3D()

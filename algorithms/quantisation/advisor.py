@@ -167,7 +167,7 @@ def default_search(question: Question) -> SearchGrid:
     Raises
     ------
     RequestError
-        Where there is no noise, from which everything follows.
+        Where there is no noise, from which everything follows, or as much as the region is wide.
     """
     if question.noise == 0.0:
         raise RequestError(
@@ -180,6 +180,14 @@ def default_search(question: Question) -> SearchGrid:
     sigma = min(line.sigma for line in question.lines if line.sigma > 0.0)
     # Short numbers, since people will read and write them.
     widths = np.array([float(f"{width * sigma:.6g}") for width in WIDTHS])
+    # A column as wide as the region holds every plot, whatever the row.
+    side = min(high - low for low, high in zip(question.region.lower, question.region.upper, strict=True))
+    widths = widths[widths < side]
+    if not len(widths):
+        raise RequestError(
+            f"noise of σ = {sigma:g} spreads votes over the whole region, {side:g} from side to side; give "
+            "less noise, or a larger region"
+        )
     kept = sorted(count for count in rows if count <= MOST_ROWS)
     return SearchGrid(np.array(kept or [MOST_ROWS], dtype=np.int64), widths)
 
@@ -263,13 +271,19 @@ def advise(question: Question, search: SearchGrid | None = None) -> Advice:
     Raises
     ------
     RequestError
-        Where no quantisation keeps the demands.
+        Where no target can give a line, or no quantisation keeps the demands.
 
     Notes
     -----
     The thesis gives bounds on Δρ and leaves Δθ and the threshold open. This choice follows from the
     distribution of the votes of a line and of clutter; see `home_cell` and `false_cells`.
     """
+    if question.detection_probability == 0.0:
+        raise RequestError("the detection probability is 0: targets give no plots, and nothing finds them")
+    if max(line.scans for line in question.lines) < 2:
+        raise RequestError(
+            "targets are there in one scan alone, and one plot is no line; give 2 scans or more"
+        )
     found = survey(question, search or default_search(question))
     while True:
         row, width, votes = found.choice(question.false_cells)

@@ -107,12 +107,20 @@ def _predict_line(question: Question, line: TargetLine, grid: Grid, votes: int) 
     _, along = line.about(grid.origin)
     return LinePrediction(
         line,
-        float(own[0, 0] @ np.arange(line.scans + 1)) / expected if expected else 0.0,
+        _mean_share(line, grid),
         float(reached[0, 0, votes - 1]),
         other_votes,
         rows,
         suppression_window(rows, line.sigma, line.extent, along, grid.theta_step, grid.rho_step),
     )
+
+
+def _mean_share(line: TargetLine, grid: Grid) -> float:
+    """Return the mean share of a target's votes in its home cell, which no detection probability changes."""
+    certain = home_votes(
+        np.array([grid.theta_step]), np.array([grid.rho_step]), line.sigma, line.scans, line.extent, 1.0
+    )
+    return float(certain[0, 0] @ np.arange(line.scans + 1)) / line.scans
 
 
 @dataclass(frozen=True, slots=True)

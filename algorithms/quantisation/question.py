@@ -15,6 +15,9 @@ from algorithms.quantisation.spread import VoteDistribution
 
 Array = NDArray[np.float64]
 
+ALONG_AXIS = 1e-12
+"""Cosine or sine of a line's θ up to which the line lies along an axis."""
+
 MOST_SCANS = 1000
 """The most scans of a batch: the votes of a line are worked out scan by scan."""
 
@@ -59,7 +62,9 @@ class TargetLine:
         theta = float(line_through(first, velocity)[0])
         elapsed = (scans - 1) * interval
         middle = (first[0] + 0.5 * elapsed * velocity[0], first[1] + 0.5 * elapsed * velocity[1])
-        across = math.hypot(sigma[0] * math.cos(theta), sigma[1] * math.sin(theta))
+        # A line along an axis has no share of the noise along it, not even that of a rounded right angle.
+        shares = (side if abs(side) > ALONG_AXIS else 0.0 for side in (math.cos(theta), math.sin(theta)))
+        across = math.hypot(*(noise * share for noise, share in zip(sigma, shares, strict=True)))
         return cls(across, scans, elapsed * math.hypot(*velocity), theta, middle)
 
     def about(self, origin: tuple[float, float]) -> tuple[float, float]:
@@ -218,7 +223,8 @@ class Question:
 
         Clutter lies on its line, and so may plots of the other targets, where their tracks cross it.
         """
-        votes = rho_step * self.clutter.density_on(line)
+        # A cell wider than the clutter's region holds all of it, and no more.
+        votes = min(rho_step * self.clutter.density_on(line), self.clutter.plots)
         if line.theta is None:
             return votes
         rho, _ = line.about((0.0, 0.0))

@@ -183,7 +183,8 @@ def search_motions(  # type: ignore[no-untyped-def]
             y = position[plot, 1] - position[start, 1]
             z = position[plot, 2] - position[start, 2]
             add_plot(sums, vectors, totals, depth + 1, weight, plot, x, y, z, time[plot] - time[start])
-            if depth + 1 > 2:
+            # Plots of one time leave the velocity open: they are not tested before a later one comes.
+            if depth + 1 > 2 and time[plot] > time[start]:
                 square, speed, deviation = fit(sums, vectors, totals, depth + 1, still, moving, state)
                 noise = allowance * deviation
                 if square > limits[1, depth + 1] or not slowest - noise <= speed <= fastest + noise:

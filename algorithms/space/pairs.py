@@ -47,12 +47,15 @@ def _variance_along(covariance, first, second, x, y, z):  # type: ignore[no-unty
 def is_within_reach(  # type: ignore[no-untyped-def]
     position, time, covariance, first, second, slowest, fastest, allowance
 ):
-    """Return whether two plots are as far apart as a target can go between them, the noise allowed for."""
+    """Return whether two plots are as far apart as a target can go between them, the noise allowed for.
+
+    Two plots of one time, of different sensors, are within reach where noise alone may part them.
+    """
     x = position[second, 0] - position[first, 0]
     y = position[second, 1] - position[first, 1]
     z = position[second, 2] - position[first, 2]
     elapsed = time[second] - time[first]
-    if elapsed <= 0.0:
+    if elapsed < 0.0:
         return False
     square = x * x + y * y + z * z
     noise = 0.0

@@ -3,13 +3,42 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
 
 PLANES = np.array([[0, 1], [0, 2], [1, 2]])
 """Axes of the planes xy, xz and yz."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlaneVotes:
+    """The votes of pairs of plots in the planes xy, xz and yz, each pair with one in each.
+
+    Attributes
+    ----------
+    pairs : int64 (k, 2), rows of the two plots, the earlier one first
+    theta : float64 (3, k), direction of the line through the two, in [0, π); NaN where they coincide
+    distance : float64 (3, k), d = x·sin θ − y·cos θ from where the initiator measures it; NaN likewise
+    confirmed : bool (3, k), whether enough other votes lie with it in a window of the plane
+    tried : how many pairs there were before the gate of their distance
+    window : size of a window, in radians and in length
+    least : the least votes of a window that confirms them
+    """
+
+    pairs: NDArray[np.int64]
+    theta: NDArray[np.float64]
+    distance: NDArray[np.float64]
+    confirmed: NDArray[np.bool_]
+    tried: int
+    window: tuple[float, float]
+    least: int
+
+    def __len__(self) -> int:
+        return len(self.pairs)
 
 
 @kernel

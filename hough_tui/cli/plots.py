@@ -15,7 +15,7 @@ from hough_tui.cli.process import announce_compilation, refuse, reported, tell
 
 @reported
 def initiate(
-    plots: Annotated[Path, typer.Argument(metavar="PLOTS", help="A CSV file: scan or time, x, y.")],
+    plots: Annotated[Path, typer.Argument(metavar="PLOTS", help="A CSV file: scan or time, x, y, maybe z.")],
     name: Annotated[
         str, typer.Option("--initiator", "-i", metavar="NAME", help="Which initiator.")
     ] = "standard",
@@ -27,7 +27,7 @@ def initiate(
         str | None, typer.Option(metavar="A:B", help="Use scans A to B - 1 only; they are numbered from 0.")
     ] = None,
     interval: Annotated[float | None, typer.Option(help="Time between scans, in seconds.")] = None,
-    sigma: Annotated[float | None, typer.Option(help="Standard deviation of the noise on x and y.")] = None,
+    sigma: Annotated[float | None, typer.Option(help="Standard deviation of the noise on each axis.")] = None,
     detection_probability: Annotated[
         float | None, typer.Option("--detection-probability", "--pd", help="Probability of a plot in a scan.")
     ] = None,
@@ -67,10 +67,12 @@ def initiate(
     algorithm = initiator(name)
     parameters = initiation.given_parameters(algorithm, config, assignments or ())
     known = known_sensor(sigma, detection_probability, unit, region, interval)
-    base = initiation.scenario_context(like) if like else None
+    scenario = initiation.like_scenario(like) if like else None
+    base = scenario.context if scenario else None
     text = read_text(plots)
     spacing = interval if interval is not None else base and base.interval
     recording = parse_plots(text, str(plots), interval=spacing, scans=window(scans))
+    recording = initiation.with_noise(recording, known, scenario)
     context, assumed = initiation.context_of(recording, known, base, window(scans))
     announce_compilation()
     found = initiation.initiate(recording, algorithm, parameters, context, assumed, most)
@@ -115,25 +117,34 @@ def simulate(
     trial: Annotated[int, typer.Option(min=0, max=2**32 - 1, help="Which trial, from 0.")] = 0,
     seed: SeedOption = None,
     assignments: SetOption = None,
+    clustering: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Of sensors of high resolution: cluster the points so, or ideal; by default the points are "
+            "written.",
+        ),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="FILE", help="Write here, not to standard output."),
     ] = None,
 ) -> None:
     """Write the plots of one trial as CSV, with the target that each came from and its true position."""
-    from hough_tui.experiments.choice import changed, chosen_scenario, seed_of
+    from hough_tui.experiments.choice import changed, chosen_clustering, chosen_scenario, seed_of
+    from hough_tui.experiments.simulation import cell_words, simulated
     from scenarios.atomic import replace_file
     from scenarios.files import load_set
-    from scenarios.recordings import write_plots
-    from scenarios.simulate import draw
-    from scenarios.world import World
 
     given = load_set(name)
     chosen = chosen_scenario(given, scenario)
     seed = seed_of(given, chosen) if seed is None else seed
     chosen = changed(chosen, assignments or ())
+    stage = chosen_clustering(given, chosen, clustering)
     announce_compilation()
-    text = write_plots(draw(World.of(chosen), seed, trial), chosen)
+    text = simulated(chosen, seed, trial, stage)
+    if chosen.is_resolved and stage is None:
+        tell(cell_words(chosen))
     if output is None:
         sys.stdout.write(text)
     else:

@@ -90,7 +90,7 @@ def _of_noise(design: Design, advice: Advice) -> str:
 
 def _of_extent(design: Design, advice: Advice) -> str:
     question, step = advice.question, advice.grid.theta_step
-    line = max(question.lines, key=lambda line: line.extent / line.sigma if line.sigma else 0.0)
+    line = max((line for line in question.lines if line.sigma), key=lambda line: line.extent / line.sigma)
     radius = 0.5 * line.extent * math.sin(0.5 * step)
     widest = math.degrees(widest_row(line.sigma, line.extent, question.kappa))
     longest = "The" if len(question.lines) == 1 else "The longest"

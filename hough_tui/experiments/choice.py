@@ -7,8 +7,9 @@ from typing import Any
 
 from algorithms.errors import RequestError
 from algorithms.parameters import FieldError, Path, replaced, unknown
+from scenarios.entries import WITHOUT_CLUSTERING, ClusteringEntry, WithoutClustering
 from scenarios.marked_yaml import read
-from scenarios.model import Scenario, ScenarioSet
+from scenarios.model import InitiatorEntry, Scenario, ScenarioSet
 from scenarios.sweeps import place
 
 
@@ -30,6 +31,27 @@ def chosen_scenario(given: ScenarioSet, name: str | None) -> Scenario:
     if name not in names:
         raise RequestError(unknown(name, names, "scenario"))
     return given.scenario(name)
+
+
+def chosen_clustering(
+    given: ScenarioSet, scenario: Scenario, name: str | None
+) -> ClusteringEntry | WithoutClustering | None:
+    """Return how the points of a scenario become plots; None where they are left as they are.
+
+    Raises
+    ------
+    RequestError
+        Where there is no such clustering, it cannot stand before initiators, or there are no points.
+    """
+    if name is None or name == "none":
+        return None
+    if not scenario.is_resolved:
+        raise RequestError(f"--clustering {name}: {scenario.name} has no sensor of high resolution")
+    able = {entry.name: entry for entry in given.clusterings if entry.mode != "k-means"}
+    known: dict[str, ClusteringEntry | WithoutClustering] = {**WITHOUT_CLUSTERING, **able}
+    if name not in known:
+        raise RequestError(f"--clustering: {unknown(name, list(known), 'clustering')}")
+    return known[name]
 
 
 def changed(scenario: Scenario, assignments: Sequence[str]) -> Scenario:
@@ -62,3 +84,18 @@ def seed_of(given: ScenarioSet, scenario: Scenario) -> int:
         if scenario.name in (found.name for found in given.chosen_scenarios(experiment)):
             return experiment.seed
     return 1
+
+
+def ignores_z(entry: InitiatorEntry, scenario: Scenario) -> bool:
+    """Return whether an initiator works in the plane (x, y) of a scenario in space."""
+    return entry.algorithm.dimensions < scenario.dimensions
+
+
+def why_not_in_plane(entry: InitiatorEntry, scenario: Scenario) -> str | None:
+    """Return why an initiator in space cannot work on a scenario in the plane; None where it can."""
+    if entry.algorithm.dimensions <= scenario.dimensions:
+        return None
+    return (
+        f"{entry.initiator} works in space, and {scenario.name} lies in the plane: it cannot run there; give "
+        "sensor and targets a z"
+    )

@@ -16,12 +16,16 @@ from algorithms.scoring import Scores, score
 from algorithms.tracks import TrackChunk
 from hough_tui.experiments.columns import TrialColumns
 from hough_tui.experiments.plain import initiate_trials
+from hough_tui.experiments.plot_sources import PlotSource, plot_source, stage_key
 from hough_tui.experiments.tallies import tally
 from hough_tui.experiments.work import Cell, CellChunk, Row, SharedDraws, SharedRun
+from scenarios.entries import ClusteringEntry, WithoutClustering
 from scenarios.experiments import InitiationExperiment, MatchCriterion
 from scenarios.model import Scenario
-from scenarios.simulate import Draw, draw, truth
-from scenarios.world import World
+from scenarios.simulate import Draw, truth
+
+POINT = 10.0
+"""Plots that a point counts for in the size of a chunk: initiators combine the plots of a target."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +36,11 @@ class InitiationCell(Cell):
     def scenario(self) -> Scenario:
         """The scenario."""
         return self.point.scenario
+
+    @property
+    def clustering(self) -> ClusteringEntry | WithoutClustering | None:
+        """How points become plots; None of a scenario whose draws are plots."""
+        return self.point.elements.get("clustering")
 
     @property
     def criterion(self) -> MatchCriterion:
@@ -46,7 +55,7 @@ class InitiationCell(Cell):
     @property
     def run_key(self) -> str:
         """What decides what is found in a draw."""
-        return f"{self.entry.initiator} {self.parameters.model_dump_json()}"
+        return f"{stage_key(self.clustering)} {self.entry.initiator} {self.parameters.model_dump_json()}"
 
     def heading(self, trials: int) -> Row:
         """Return what a row says before what was found."""
@@ -109,31 +118,30 @@ class ScenarioDraws(SharedDraws):
 
     @property
     def expected_detections(self) -> float:
-        """Number of plots that a trial is expected to hold."""
-        return self.scenario.expected_plots
+        """Number of plots that a trial is expected to hold; points that may all be plots count for more."""
+        return self.scenario.expected_plots * (POINT if self.scenario.is_resolved else 1.0)
 
     @property
     def needs_processes(self) -> bool:
         """Whether an initiator is in plain Python, which would hold the interpreter's lock."""
         return not all(isinstance(run.entry.algorithm, ChunkInitiator) for run in self.runs)
 
-    def prepared(self) -> World:
-        """Return the scenario as the drawing kernel takes it."""
-        return World.of(self.scenario)
+    def prepared(self) -> PlotSource:
+        """Return what draws the scenario's plots."""
+        return plot_source(self.scenario)
 
     def run(
-        self, prepared: World, first: int, trials: int, plain: Callable[..., Any]
+        self, prepared: PlotSource, first: int, trials: int, plain: Callable[..., Any]
     ) -> Iterator[TrackCellChunk]:
         """Yield the scored tracks of consecutive trials, cell by cell."""
-        began = time.thread_time()
-        drawn = draw(prepared, self.seed, first, trials)
-        drawing = time.thread_time() - began
-        control: Draw | None = None
+        chunk = prepared.chunk(self.seed, first, trials)
         for run in self.runs:
+            stage = self.cells[run.cells[0]].clustering
+            drawn, drawing = chunk.plots(stage)
             tracks, finding = self._tracks(run, drawn.chunk, plain)
             controlled = [cell for cell in run.cells if self.cells[cell].has_control]
             if controlled:
-                control = control or drawn.without_targets()
+                control = chunk.control(stage)
                 control_tracks, _ = self._tracks(run, control.chunk, plain)
             for cell in run.cells:
                 began = time.thread_time()
@@ -141,7 +149,6 @@ class ScenarioDraws(SharedDraws):
                 scoring = time.thread_time() - began
                 found = None
                 if cell in controlled:
-                    assert control is not None
                     found = self._scores(cell, control_tracks, control).found
                 yield TrackCellChunk(cell, drawing + finding + scoring, tracks, scores, found)
 

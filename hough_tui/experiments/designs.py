@@ -16,6 +16,7 @@ from hough_tui.experiments.choice import changed, chosen_scenario
 from scenarios.clutter import ExactClutter
 from scenarios.files import load_set
 from scenarios.model import Scenario
+from scenarios.sensors import PolarSensor
 from scenarios.targets import Target
 
 PLACEMENTS = 40
@@ -122,7 +123,19 @@ def scenario_design(name: str, assignments: Sequence[str], demands: Demands) -> 
     set_name, _, scenario_name = name.partition(":")
     scenario = changed(chosen_scenario(load_set(set_name), scenario_name or None), assignments)
     names = tuple(scenario.targets[index].name or f"target {index}" for index in moving_targets(scenario))
-    return Design(question_of(scenario, demands), (scenario,), names)
+    return Design(question_of(scenario, demands), (scenario,), names, taken_for(scenario))
+
+
+def taken_for(scenario: Scenario) -> dict[str, str]:
+    """Return in words what of a scenario a question takes for something simpler."""
+    found = {}
+    if any(isinstance(sensor, PolarSensor) for sensor in scenario.sensors):
+        found["noise"] = "everywhere that in the middle of the sensor's sector"
+    if any(source.over in ("volume", "sector") for source in scenario.clutter):
+        found["clutter"] = (
+            "uniform over the region; a sector fills part of it only, and gives more false cells than that"
+        )
+    return found
 
 
 def sensing_design(sensing: Sensing, demands: Demands, seed: int, assumed: dict[str, str]) -> Design:

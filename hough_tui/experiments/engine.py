@@ -1,8 +1,9 @@
 """The local engine: chunks of trials on threads, into per-trial columns.
 
 A chunk is a fixed range of trials, its kernels run without the interpreter's lock, and it
-writes its own rows of the columns: neither the number of workers nor their order can change a
-figure. An initiator in plain Python would hold the lock, so its trials go to processes.
+writes its own rows of the columns: neither the number of workers nor their order, nor the parts in
+which a chunk that takes long is done, can change a figure. An initiator in plain Python would hold
+the lock, so its trials go to processes.
 """
 
 from __future__ import annotations
@@ -24,6 +25,12 @@ from algorithms.errors import WorkFailedError
 from hough_tui.experiments.plain import begin_worker
 from hough_tui.experiments.plan import Plan
 from hough_tui.experiments.work import Cell, Columns, Row
+
+PART_SECONDS = 0.05
+"""About how long a worker goes on before it looks whether the run is cancelled; one trial may last longer."""
+
+LEAST_SECONDS = 1e-6
+"""The least time that a part is taken to last, where the clock is coarse."""
 
 
 @dataclass(slots=True)
@@ -66,6 +73,7 @@ class Job:
         self._cancelled = threading.Event()
         self._lock = threading.Lock()
         self._chunks = _chunks(plan)
+        self._pace: dict[int, float] = {}
         self._cold = list(plan.draws)
         # Processes come first: starting them once threads are busy is slow, and unsafe by fork.
         self._processes = _processes(plan, self.workers)
@@ -143,6 +151,19 @@ class Job:
                 continue
 
     def _run(self, index: int, first: int, trials: int) -> None:
+        """Do a chunk, in parts that are soon done: where most cells are tracks, a trial takes long."""
+        end = first + trials
+        while first < end and not self._cancelled.is_set():
+            with self._lock:
+                pace = self._pace.get(index, PART_SECONDS)
+            part = min(end - first, max(1, int(PART_SECONDS / pace)))
+            began = time.monotonic()
+            self._run_part(index, first, part)
+            with self._lock:
+                self._pace[index] = max(time.monotonic() - began, LEAST_SECONDS) / part
+            first += part
+
+    def _run_part(self, index: int, first: int, trials: int) -> None:
         shared = self.plan.draws[index]
         with self._lock:
             prepared = self._prepared.get(index)

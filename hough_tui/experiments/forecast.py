@@ -17,7 +17,7 @@ from algorithms.quantisation.prediction import LinePrediction, Prediction, place
 from algorithms.quantisation.question import Question
 from algorithms.quantisation.spread import VoteDistribution
 from hough_tui.experiments.adoption import LEAST_VOTES
-from hough_tui.experiments.designs import Demands, moving_targets, question_of
+from hough_tui.experiments.designs import Demands, moving_targets, question_of, taken_for
 from scenarios.entries import InitiatorEntry
 from scenarios.model import Scenario
 
@@ -143,7 +143,7 @@ def forecast(entry: InitiatorEntry, scenario: Scenario) -> Forecast:
         _outlook(question, told, grid, votes, _is_weighted(entry, parameters)),
         tuple(_picture(name, line, grid) for name, line in zip(names, told.lines, strict=True)),
         _is_weighted(entry, parameters),
-        tuple(_notes(entry, parameters, question)),
+        (*_notes(entry, parameters, question), *_simplified(scenario)),
     )
 
 
@@ -243,6 +243,10 @@ def _curve(votes: VoteDistribution, low: float, high: float, reach: float) -> ND
     rho = np.union1d(np.linspace(low, high, SAMPLES), near)
     rho = rho[(rho >= low) & (rho <= high)]
     return np.column_stack([rho, votes.density(rho) / top])
+
+
+def _simplified(scenario: Scenario) -> list[str]:
+    return [f"Assumed {name}: {value}." for name, value in taken_for(scenario).items()]
 
 
 def _notes(entry: InitiatorEntry, parameters: AccumulatingParameters, question: Question) -> list[str]:

@@ -22,7 +22,9 @@ from algorithms.tracks import Tracks
 from scenarios.atomic import replace_file
 from scenarios.files import load_set, located, read_text
 from scenarios.marked_yaml import read
+from scenarios.model import Scenario
 from scenarios.recordings import Recording
+from scenarios.sensors import PolarSensor
 
 MOST_TRACKS = 1000
 """How many tracks are given where nothing else is asked for."""
@@ -102,8 +104,8 @@ def context_of(
     return replace(base, **given), assumed
 
 
-def scenario_context(name: str) -> Context:
-    """Return the context of a scenario, given as SET or SET:SCENARIO.
+def like_scenario(name: str) -> Scenario:
+    """Return a scenario, given as SET or SET:SCENARIO.
 
     Raises
     ------
@@ -113,7 +115,30 @@ def scenario_context(name: str) -> Context:
     from hough_tui.experiments.choice import chosen_scenario
 
     set_name, _, scenario = name.partition(":")
-    return chosen_scenario(load_set(set_name), scenario or None).context
+    return chosen_scenario(load_set(set_name), scenario or None)
+
+
+def with_noise(recording: Recording, known: Known, like: Scenario | None) -> Recording:
+    """Return a recording whose plots have the covariance that a polar sensor gives them where they lie.
+
+    A σ that the user says goes before it. With several sensors plots do not tell whose they are;
+    they are left to the context's σ.
+
+    Parameters
+    ----------
+    recording : plots
+    known : what the user says
+    like : a scenario that the plots are like
+    """
+    plots = recording.plots
+    if like is None or known.sigma is not None or not isinstance(like.sensor, PolarSensor):
+        return recording
+    if like.sensor.dimensions != plots.position.shape[1]:
+        return recording
+    if like.further_sensors:
+        said = "the greatest of the sensors on each axis, since plots do not tell whose they are"
+        return replace(recording, assumed={**recording.assumed, "sigma": said})
+    return replace(recording, plots=replace(plots, covariance=like.sensor.covariance(plots.position)))
 
 
 def given_parameters(algorithm: Initiator, config: Path | None, assignments: Sequence[str]) -> Parameters:
@@ -204,7 +229,8 @@ def initiate(
 
 
 def _no_plots(plots: Plots) -> Plots:
-    return Plots(plots.scan[:0], plots.time[:0], plots.position[:0])
+    covariance = None if plots.covariance is None else plots.covariance[:0]
+    return Plots(plots.scan[:0], plots.time[:0], plots.position[:0], covariance=covariance)
 
 
 def document(found: Initiation) -> dict[str, Any]:
@@ -219,6 +245,7 @@ def document(found: Initiation) -> dict[str, Any]:
         "unit": found.context.unit.value,
         "assumed": found.assumed,
         "notes": notes(found),
+        "effort": dict(tracks.effort),
         "tracks_total": found.total,
         "tracks": [
             {
@@ -271,7 +298,7 @@ def write_accumulator(found: Initiation, path: Path) -> None:
 def notes(found: Initiation) -> list[str]:
     """Return what a reader of the tracks must know."""
     said = []
-    if found.recording.plots.position.shape[1] > 2:
+    if found.recording.plots.position.shape[1] > found.algorithm.dimensions:
         said.append(f"{found.algorithm.name} works in the plane: the column z is ignored")
     if found.total > len(found.tracks):
         said.append(

@@ -12,13 +12,14 @@ from algorithms.hough.voting import Accumulator
 from algorithms.parameters import Parameters
 from algorithms.plots import Plots
 from algorithms.scoring import score
+from algorithms.space.planes import PlaneVotes
 from algorithms.tracks import Tracks
 from hough_tui.experiments.plain import gathered
+from hough_tui.experiments.plot_sources import Stage, plots_of
 from scenarios.entries import InitiatorEntry
 from scenarios.experiments import MatchCriterion
 from scenarios.model import Scenario
-from scenarios.simulate import Draw, draw, true_paths, truth
-from scenarios.world import World
+from scenarios.simulate import Draw, true_paths, truth
 
 MOST_TRACKS = 500
 """How many tracks of a trial are looked at; nobody looks at more, and each must find its plots."""
@@ -67,6 +68,7 @@ class TrialLook:
     total : number of all tracks
     state : int8 (tracks,), `FALSE`, `FINDER` or `DUPLICATE`; None without a criterion
     accumulator : the votes; None for an initiator that has none
+    plane_votes : the votes of pairs of plots in three planes; None for an initiator that has none
     seconds : of the initiator
     """
 
@@ -77,12 +79,18 @@ class TrialLook:
     total: int
     state: NDArray[np.int8] | None
     accumulator: Accumulator | None
+    plane_votes: PlaneVotes | None
     seconds: float
 
 
-def picture(scenario: Scenario, seed: int, trial: int) -> Picture:
-    """Return a draw of a scenario."""
-    return Picture(scenario, seed, trial, draw(World.of(scenario), seed, trial))
+def picture(scenario: Scenario, seed: int, trial: int, stage: Stage = None) -> Picture:
+    """Return a draw of a scenario.
+
+    Parameters
+    ----------
+    stage : how points become plots, of a scenario whose sensors give points; None: every point is a plot
+    """
+    return Picture(scenario, seed, trial, plots_of(scenario, seed, trial, stage))
 
 
 def look(
@@ -107,7 +115,8 @@ def look(
     seconds = time.perf_counter() - began
     state = None if criterion is None else _states(seen, tracks, criterion)
     accumulator = algorithm.accumulator(seen.plots, context, parameters)
-    return TrialLook(seen, entry, parameters, tracks, total, state, accumulator, seconds)
+    plane_votes = algorithm.plane_votes(seen.plots, context, parameters)
+    return TrialLook(seen, entry, parameters, tracks, total, state, accumulator, plane_votes, seconds)
 
 
 def _states(seen: Picture, tracks: Tracks, criterion: MatchCriterion) -> NDArray[np.int8]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 from rich import box
@@ -129,14 +129,24 @@ def sheet_table(sheet: Sheet, width: int) -> Table:
 
 def chosen(columns: Sequence[Column], width: int) -> tuple[list[Column], list[Column]]:
     """Return the columns that fit, in their order, and those that do not, the most wanted first."""
-    shown, left_out = list(columns), []
-    for rank in sorted({column.rank for column in columns if column.rank > 0}, reverse=True):
-        prose = COMFORTABLE_PROSE if rank >= LUXURY else NARROWEST_PROSE
-        if sum(column.least(prose) for column in shown) + GAP * (len(shown) - 1) <= width:
+    ranks = sorted({column.rank for column in columns if column.rank > 0})
+    kept = {0, *ranks}
+    for rank in reversed(ranks):
+        if _fit(columns, kept, COMFORTABLE_PROSE if rank >= LUXURY else NARROWEST_PROSE, width):
             break
-        left_out += [column for column in shown if column.rank == rank]
-        shown = [column for column in shown if column.rank != rank]
-    return shown, left_out[::-1]
+        kept.discard(rank)
+    # What is less wanted may be narrower, and have room where a wider group has none.
+    for rank in ranks:
+        if rank not in kept and _fit(columns, {*kept, rank}, COMFORTABLE_PROSE, width):
+            kept.add(rank)
+    left_out = [column for rank in ranks for column in columns if column.rank == rank and rank not in kept]
+    return [column for column in columns if column.rank in kept], left_out
+
+
+def _fit(columns: Sequence[Column], ranks: Collection[int], prose: int, width: int) -> bool:
+    """Return whether the columns of some ranks fit, prose broken at a width."""
+    needed = [column.least(prose) for column in columns if column.rank in ranks]
+    return sum(needed) + GAP * (len(needed) - 1) <= width
 
 
 def enumerated(names: Sequence[str]) -> str:

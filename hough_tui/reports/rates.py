@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from hough_tui.reports.counts import count_sheet
-from hough_tui.reports.layout import Column, Sheet
+from hough_tui.reports.layout import Column, Sheet, broken
 from hough_tui.reports.numerals import (
     aligned,
     as_given,
@@ -15,6 +15,7 @@ from hough_tui.reports.numerals import (
     significant,
 )
 from hough_tui.reports.row_columns import (
+    SHORT_KEY,
     Row,
     interval,
     measured,
@@ -27,6 +28,12 @@ from hough_tui.reports.row_columns import (
 
 HIGH_CONTROL = 0.05
 """From here on clutter alone is no small part of a success."""
+
+MANY_TARGETS, UNLIKE = 3, 0.1
+"""Where so many targets differ by more than this, their mean says little: success by target goes first."""
+
+SUCCESS, BY_TARGET = "success %", "success by target"
+"""The name of the column of success, and what those of each target are called."""
 
 
 def rate_sheets(rows: Sequence[Row]) -> list[Sheet]:
@@ -89,7 +96,7 @@ def _sheet(title: str, rows: Sequence[Row]) -> Sheet:
     units = list(dict.fromkeys(str(row.get("unit") or "") for row in rows))
     unit = units[0] if len(units) == 1 else ""
     columns = [
-        *name_columns(rows, "scenario", "initiator"),
+        *name_columns(rows, "scenario", "clustering", "initiator"),
         *swept_columns(rows),
         *_success(rows),
         *_false(rows),
@@ -143,12 +150,23 @@ def _by_target(rows: Sequence[Row]) -> list[Column]:
     most = max(map(len, shares), default=0)
     if most < 2:
         return []
+    known = [[share for share in values if share is not None] for values in shares]
+    spread = max((max(values) - min(values) for values in known if values), default=0.0)
+    # Of two targets the mean tells nearly as much; of more it hides which of them is missed.
+    rank = 90 if most < MANY_TARGETS else 35 if spread > UNLIKE else 55
     columns = []
     for target in range(most):
         cells = [percent(values[target] if target < len(values) else None) for values in shares]
-        heading = f"target {target + 1}\n%"
-        columns.append(Column(heading, aligned(cells), rank=90, quiet=True, called="success by target"))
+        heading = f"{broken(_target_name(rows, target), SHORT_KEY)}\n%"
+        columns.append(Column(heading, aligned(cells), rank=rank, quiet=True, called=BY_TARGET))
     return columns
+
+
+def _target_name(rows: Sequence[Row], target: int) -> str:
+    """Return what all rows call a target, else its number."""
+    names = {(list(row.get("targets") or []) + [None] * (target + 1))[target] for row in rows}
+    name = names.pop() if len(names) == 1 else None
+    return str(name or f"target {target + 1}")
 
 
 def _notes(rows: Sequence[Row], unit: str) -> tuple[str, ...]:

@@ -213,6 +213,11 @@ def _track_notes(document: Document, tracks: Sequence[Document], found: int) -> 
     votes = document.get("accumulator") or {}
     sizes = [number(votes.get(key)) for key in ("theta_bins", "rho_bins", "votes", "max")]
     lines = [" ".join(parts)]
+    counted = [
+        f"{name.replace('_', ' ')} {count:,}" for name, count in (document.get("effort") or {}).items()
+    ]
+    if counted:
+        lines.append(f"Counted: {', '.join(counted)}.")
     if None not in sizes:
         theta, rho, total, greatest = (int(size or 0) for size in sizes)
         lines.append(

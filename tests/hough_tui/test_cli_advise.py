@@ -241,6 +241,18 @@ def test_the_application_to_another_set_leaves_the_scenario_alone(cli, mine):
     assert load_set(mine).scenarios[0].sensor.detection_probability == 0.9
 
 
+# Sensors with a sector, in space
+
+
+def test_a_scene_in_space_is_checked_in_the_plane_and_what_is_taken_for_simpler_is_said(advised):
+    told = advised("par-table-2:T1", "--check", 200)
+    assert len(told["check"]["targets"]) == 1
+    assert 0 < told["check"]["home_cell_rate"] < 1
+    assert told["assumed"]["noise"].endswith("the middle of the sensor's sector")
+    assert "sector fills part of it only" in told["assumed"]["clutter"]
+    assert advised(*CROSSING)["assumed"] == {}
+
+
 # Wrong requests
 
 
@@ -253,6 +265,9 @@ def test_the_application_to_another_set_leaves_the_scenario_alone(cli, mine):
         (options(extent=10), ["--speed and --extent"]),
         (options(speed=None, extent=10, scans=1), ["--extent", "more --scans"]),
         (options(sigma=0), ["noise is 0"]),
+        (options(sigma=120), ["noise of σ = 120", "the whole region, 100 from side to side"]),
+        (["course-report:two-crossing", "--set", "detection_probability=0"], ["detection probability is 0"]),
+        ([*CROSSING, "--set", "scans=1"], ["one scan alone", "2 scans or more"]),
         (options(clutter=-3), ["--clutter -3", "at least 0"]),
         (options(clutter=1e9), ["clutter[0].rate", "at most"]),
         (options(region="5,1,0,3"), ["--region", "X0 must be less"]),
@@ -291,3 +306,13 @@ def test_a_scenario_without_a_moving_target_is_refused(cli, mine):
     status, _, err = cli("advise", mine)
     assert status == 2
     assert "no target that moves" in err
+
+
+def test_a_line_along_the_axis_without_noise_goes_beside_others(cli, mine):
+    # It has no noise across; the other one is there in one scan, and has no length.
+    target = "{position: [20, 20], velocity: [0.3, 0]}, {position: [30, 30], velocity: [0, 0.2], death: 0}"
+    text = MINE.replace("{position: [40, 20], velocity: [0.3, 0.18]}", target)
+    mine.write_text(text.replace("sigma: 0.1", "sigma: [0.1, 0]"))
+    status, out, err = cli("advise", mine)
+    assert status == 0, err
+    assert "P_D" in out

@@ -223,6 +223,67 @@ def test_a_column_z_is_ignored_and_said(cli, tmp_path):
     assert any(track["plots"] == [0, 1, 2, 3] for track in json.loads(out)["tracks"])
 
 
+@pytest.fixture
+def approach(cli, tmp_path):
+    """The plots of a trial of the precision approach radar's scene, with the targets they come from."""
+    path = tmp_path / "approach.csv"
+    assert cli("simulate", "par-table-2", "--scenario", "together", "-o", path)[0] == 0
+    return path
+
+
+@pytest.mark.parametrize("name", ["combinatorial-3d", "hough-logic-3d", "hough-3d"])
+def test_plots_in_space(cli, approach, name):
+    status, out, err = cli("initiate", approach, "-i", name, "--like", "par-table-2:together", "--json")
+    assert status == 0
+    assert "ignored" not in err
+    found, rows = json.loads(out), rows_of(approach.read_text())
+    assert set(rows[0]) == {"scan", "time", "x", "y", "z", "target", "true_x", "true_y", "true_z"}
+    own = {tuple({rows[plot]["target"] for plot in track["plots"]}) for track in found["tracks"]}
+    assert own == {("0",), ("1",), ("2",), ("3",), ("4",)}
+    assert found["notes"] == []
+    assert found["effort"]["pairs"] > 50 * found["effort"]["pairs_gated"] > 0
+    for track in found["tracks"]:
+        assert len(track["position"]) == len(track["velocity"]) == 3
+        first = rows[track["plots"][0]]
+        assert math.dist(track["position"], [float(first[f"true_{axis}"]) for axis in "xyz"]) < 400.0
+    table = cli("initiate", approach, "-i", name, "--like", "par-table-2:together")[1]
+    assert f"Counted: pairs {found['effort']['pairs']:,}, pairs gated " in table
+
+
+def test_the_noise_of_plots_in_space_is_that_of_the_sensor_unless_sigma_is_given(document, cli, approach):
+    given = ("-i", "combinatorial-3d", "--unit", "m", "--set", "plots=4")
+    alike = document(approach, *given, "--like", "par-table-2:together")
+    assert len(alike["tracks"]) == 5
+    # So little noise that no fit passes; it goes before that of the scenario.
+    assert document(approach, *given, "--like", "par-table-2:together", "--sigma", 1)["tracks"] == []
+    assert len(document(approach, *given, "--sigma", 100)["tracks"]) >= 4
+    status, _, err = cli("initiate", approach, *given)
+    assert (status, err) == (
+        2,
+        "hough-tui: the noise is not known: give sigma, or plots of a sensor with known noise\n",
+    )
+
+
+def test_several_sensors_lend_the_greatest_of_their_noise(cli, approach, tmp_path):
+    path = tmp_path / "two.yaml"
+    radar = (
+        "{kind: polar, sigma_range: 50, sigma_azimuth_deg: .3, sigma_elevation_deg: .2, range: [1e3, 4e4]}"
+    )
+    path.write_text(
+        "name: two\nscenarios:\n"
+        f"  - {{name: both, unit: m, scans: 4, interval: 1, sensor: {radar}, further_sensors: [{radar}]}}\n"
+    )
+    status, out, _ = cli("initiate", approach, "-i", "combinatorial-3d", "--like", path, "--json")
+    assert status == 0
+    assert json.loads(out)["assumed"]["sigma"].startswith("the greatest of the sensors on each axis")
+
+
+def test_an_initiator_in_space_needs_z(cli, simulated):
+    status, out, err = cli("initiate", simulated, "-i", "combinatorial-3d", "--sigma", 0.1)
+    assert (status, out) == (2, "")
+    assert "combinatorial-3d works in space, and the plots have no z; give a column z" in err
+
+
 def test_a_track_of_one_plot_has_no_velocity(document, tmp_path):
     path = tmp_path / "plots.csv"
     path.write_text("scan,x,y\n0,5,5\n")

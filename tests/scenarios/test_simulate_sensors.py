@@ -71,6 +71,16 @@ def test_plots_scatter_about_the_true_path_as_their_covariance_says():
         assert spread == pytest.approx(sigma, rel=4.0 / math.sqrt(2 * len(measured)) + 0.002)
 
 
+def test_the_covariance_of_a_plot_follows_from_where_it_lies():
+    radar = {**RADAR, "position": [500, -800, 20]}
+    found = scenario(sensor=radar)
+    plots = drawn(found, trials=50).chunk
+    told = found.sensor.covariance(plots.position)
+    # A position is the mean of where a plot may come from, which lies nearer than what was measured.
+    largest = np.abs(plots.covariance).max(axis=(1, 2), keepdims=True)
+    np.testing.assert_allclose(told / largest, plots.covariance / largest, atol=1e-3)
+
+
 @pytest.mark.parametrize("over", ["volume", "sector"])
 def test_clutter_fills_the_sector_evenly(over):
     clutter = [{"kind": "exact", "count": 20000, "per": "batch", "over": over}]

@@ -48,7 +48,7 @@ def plan_table(table: PublishedTable, trials: int, seed: int | None = None) -> P
             sweep = {
                 key: list(dict.fromkeys(entry.swept[key] for entry in wanted)) for key in experiment.sweep
             }
-            update = {experiment.PARTS[-1]: names, "sweep": sweep}
+            update = {experiment.parts[-1]: names, "sweep": sweep}
             experiments.append(experiment.model_copy(update=update))
     return plan_run([given.model_copy(update={"experiments": experiments})], trials=trials, seed=seed)
 
@@ -95,10 +95,12 @@ def _compared(table: PublishedTable, entry: Entry, columns: Columns) -> dict[str
         interval = mean_interval if measure.is_share else normal_interval
         test = is_consistent_rate if measure.is_share else is_consistent_mean
         told["measured"] = float(values.mean())
-        told["ci95"] = list(interval(values))
+        low, high = interval(values)
+        # The normal distribution knows no bound; nothing that is compared can be negative.
+        told["ci95"] = [max(0.0, low), high]
         if measure.is_root:
             told["measured"] = math.sqrt(values.mean())
-            told["ci95"] = [math.sqrt(max(0.0, end)) for end in interval(values)]
+            told["ci95"] = [math.sqrt(end) for end in told["ci95"]]
         if entry.published is not None and entry.is_judged:
             told["consistent"] = test(entry.published, table.trials, table.rounding, values)
     return told

@@ -49,6 +49,16 @@ class Canvas:
         self._layer = np.zeros(cells, np.int32)
         # Layer and code point in one number, so that the greatest is the one to be seen.
         self._mark = np.zeros(cells, np.int64)
+        self._ground_bits, self._ground_layer = np.zeros_like(self._bits), np.zeros_like(self._layer)
+
+    def as_ground(self) -> None:
+        """Make all dots so far the ground: it is seen in cells that hold nothing else.
+
+        Dots share a colour with all that lies in their cell, so that those of a ground would be
+        taken for what lies above it.
+        """
+        self._ground_bits, self._ground_layer = self._bits, self._layer
+        self._bits, self._layer = np.zeros_like(self._bits), np.zeros_like(self._layer)
 
     def points(self, position: Array, layer: int | NDArray[np.integer], size: int = 1) -> None:
         """Put points, each a square of `size` × `size` dots with the point in its first.
@@ -127,6 +137,13 @@ class Canvas:
         begin = row * self.viewport.width + column
         return not self._mark[begin : begin + length].any()
 
+    def is_ground(self, row: int, column: int, length: int) -> bool:
+        """Return whether cells lie within the picture and show the ground, or nothing at all."""
+        if not self.is_free(row, column, length):
+            return False
+        begin = row * self.viewport.width + column
+        return not self._bits[begin : begin + length].any()
+
     def strips(self, styles: Sequence[Style | None]) -> list[Strip]:
         """Return the lines.
 
@@ -135,9 +152,12 @@ class Canvas:
         styles : of the layers; the first, of layer 0, is that of the blank
         """
         shape = self.viewport.height, self.viewport.width
-        marked, dotted = self._mark > 0, self._bits > 0
-        codes = np.where(marked, self._mark % CODE, np.where(dotted, self._bits + np.int64(EMPTY), BLANK))
-        paint = np.where(marked, self._mark // CODE, self._layer).reshape(shape)
+        is_ground = self._bits == 0
+        bits = np.where(is_ground, self._ground_bits, self._bits)
+        layer = np.where(is_ground, self._ground_layer, self._layer)
+        marked, dotted = self._mark > 0, bits > 0
+        codes = np.where(marked, self._mark % CODE, np.where(dotted, bits + np.int64(EMPTY), BLANK))
+        paint = np.where(marked, self._mark // CODE, layer).reshape(shape)
         # A blank looks the same in any colour: as part of what is before it, it costs no change of colour.
         is_plain = np.array([style is None or not (style.reverse or style.bgcolor) for style in styles])
         filled = np.where((marked | dotted).reshape(shape), np.arange(shape[1]), 0)

@@ -46,7 +46,12 @@ class CellTable(DataTable[Text], inherit_bindings=False):
         self._shown: list[tuple[Text, ...]] = []
 
     def show(self, headings: Sequence[Text], rows: Sequence[Sequence[Text]]) -> None:
-        """Show rows under headings; the cursor stays where it is, as far as there are rows."""
+        """Show rows under headings; the cursor stays where it is, as far as there are rows.
+
+        Without rows there are no headings either, which would look like a row of nothing.
+        """
+        self.show_header = bool(rows)
+        headings = headings if rows else ()
         place, taken = self.cursor_coordinate, tuple(headings)
         if taken != self._headings:
             self.clear(columns=True)

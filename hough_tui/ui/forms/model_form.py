@@ -24,10 +24,12 @@ from hough_tui.ui.forms.extended_target_table import ExtendedTargetTable
 from hough_tui.ui.forms.fields import FieldDescription, Kind, described, ordered, walk
 from hough_tui.ui.forms.list_table import ListTable
 from hough_tui.ui.forms.numbers import Unreadable
+from hough_tui.ui.forms.sensor_table import SensorTable
 from hough_tui.ui.forms.target_table import TargetTable
 from hough_tui.ui.forms.value_field import ValueField
 from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited, FieldUnreadable
 from scenarios.scenes import ExtendedTarget
+from scenarios.sensors import CartesianSensor
 from scenarios.targets import Target
 
 TWO_COLUMNS = 100
@@ -68,6 +70,7 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
     TABLES: ClassVar[dict[type[BaseModel], type[ListTable]]] = {
         Target: TargetTable,
         ExtendedTarget: ExtendedTargetTable,
+        CartesianSensor: SensorTable,
     }
     """The tables that say more of their elements than the declaration does."""
 

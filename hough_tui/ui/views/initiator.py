@@ -19,6 +19,7 @@ from algorithms.errors import RequestError
 from algorithms.initiators.accumulating import AccumulatingParameters
 from algorithms.initiators.registry import initiators
 from algorithms.parameters import Problem
+from hough_tui.experiments.choice import ignores_z, why_not_in_plane
 from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited
 from hough_tui.ui.naming import free_name
@@ -159,11 +160,16 @@ class InitiatorView(Widget):
             return
         entry = given.initiators[self._index]
         scenario = self._scenario_of(entry)
-        caption.update(f"{entry.initiator}: {entry.algorithm.summary} ({entry.algorithm.source})")
+        summary = f"{entry.initiator}: {entry.algorithm.summary} ({entry.algorithm.source})"
         if scenario is None:
+            caption.update(summary)
             form.load(entry, ("initiators", self._index))
             self._predict(None)
             return
+        refusal = why_not_in_plane(entry, scenario)
+        if ignores_z(entry, scenario):
+            summary = f"Works in the plane: z of {scenario.name} is ignored. {summary}"
+        caption.update(refusal or summary)
         resolved: Any = None
         try:
             resolved = entry.parameters.resolved(scenario.context)

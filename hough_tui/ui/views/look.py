@@ -14,7 +14,8 @@ from textual.worker import get_current_worker
 from algorithms.errors import RequestError
 from algorithms.parameters import Parameters
 from hough_tui.experiments.choice import seed_of
-from hough_tui.experiments.look import TrialLook, look, picture
+from hough_tui.experiments.look import Picture, TrialLook, look, picture
+from hough_tui.experiments.plot_sources import Stage
 from hough_tui.ui.views.look_panel import LookPanel
 from scenarios.entries import InitiatorEntry
 from scenarios.experiments import MatchCriterion
@@ -43,7 +44,12 @@ class LookView(Widget):
         "Enter tells why the cell is a peak. Choosing a plot in the plane draws its sinusoid over the "
         "accumulator; choosing a track in the table marks its cell and its plots. w shows, of "
         "initiators that weight votes, their standard deviation or the weighted votes. Tab goes from panel "
-        "to panel; y copies the tracks, to the clipboard and to a file."
+        "to panel; y copies the tracks, to the clipboard and to a file.\n\n"
+        "A trial in space is projected on the planes xy, xz and yz, which share their axes, the cursor and "
+        "the chosen track; z goes from one to the next. Of an initiator whose pairs of plots vote, the votes "
+        "of each plane stand in place of the accumulator: d across, the direction θ down, larger where a "
+        "window confirms them. n goes from vote to vote and lights up its two plots; choosing a track lights "
+        "up its votes, choosing a plot those that it has a part in."
     )
     DEFAULT_CSS = """
     LookView { layout: vertical; height: 1fr; }
@@ -170,14 +176,14 @@ class LookView(Widget):
         if self._opened is not None:
             cell, swept = self._opened.cell, self._opened.cell.swept
             scenario, seed, criterion = cell.scenario, cell.experiment.seed, cell.criterion
-            chosen = [(cell.entry, cell.parameters)]
+            chosen, stage = [(cell.entry, cell.parameters)], cell.clustering
         else:
             scenario, swept = self._given.scenarios[self._scenario], None
             seed, criterion = seed_of(self._given, scenario), criterion_of(self._given, scenario)
-            chosen = [(self._given.initiators[self._entry], None)]
+            chosen, stage = [(self._given.initiators[self._entry], None)], None
         if self._is_double:
             chosen.append((self._given.initiators[(self._entry + 1) % len(self._given.initiators)], None))
-        self._work(scenario, seed, self._trial, chosen, criterion, swept)
+        self._work(scenario, seed, self._trial, chosen, criterion, swept, stage)
 
     @work(thread=True, exclusive=True, exit_on_error=False, group="look", name="look")
     def _work(
@@ -188,10 +194,11 @@ class LookView(Widget):
         chosen: list[tuple[InitiatorEntry, Parameters | None]],
         criterion: MatchCriterion | None,
         swept: dict[str, int | float] | None,
+        stage: Stage,
     ) -> None:
         """Draw the trial and let the initiators work on it."""
         worker = get_current_worker()
-        drawn = picture(scenario, seed, trial)
+        drawn = picture(scenario, seed, trial, stage)
         found: list[TrialLook | str] = []
         for entry, parameters in chosen:
             if worker.is_cancelled:
@@ -202,12 +209,14 @@ class LookView(Widget):
             except RequestError as error:
                 found.append(f"{entry.name}: {error}")
         if not worker.is_cancelled:
-            self.app.call_from_thread(self._show, found, swept)
+            self.app.call_from_thread(self._show, drawn, found, swept)
 
-    def _show(self, found: list[TrialLook | str], swept: dict[str, int | float] | None) -> None:
+    def _show(
+        self, drawn: Picture, found: list[TrialLook | str], swept: dict[str, int | float] | None
+    ) -> None:
         for panel, seen in zip(self.query(LookPanel), found, strict=False):
             if isinstance(seen, str):
-                panel.refuse(seen)
+                panel.refuse(seen, drawn)
             else:
                 panel.show(seen, swept)
 

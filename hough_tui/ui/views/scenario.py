@@ -18,9 +18,9 @@ from hough_tui.experiments.choice import seed_of
 from hough_tui.experiments.look import Picture, picture
 from hough_tui.ui.drawing.shortening import Part
 from hough_tui.ui.forms.model_form import ModelForm
+from hough_tui.ui.views.trial_scenes import picture_scene
 from hough_tui.ui.widgets.caption import Caption
 from hough_tui.ui.widgets.plane import Plane
-from hough_tui.ui.widgets.plane_scene import PlaneScene
 from scenarios.model import Scenario, ScenarioSet
 
 DEBOUNCE = 0.03
@@ -158,14 +158,4 @@ class ScenarioView(Widget):
             Part("Ctrl+N another draw", 1),
             Part("F9 form or picture", 2, "F9 turns"),
         )
-        self.query_one(Plane).show(
-            PlaneScene(
-                drawn.plots.position[:, :2],
-                drawn.plots.scan,
-                scenario.box.plane,
-                scenario.unit.value,
-                drawn.origin,
-                drawn.paths,
-                (),
-            )
-        )
+        self.query_one(Plane).show(picture_scene(drawn))

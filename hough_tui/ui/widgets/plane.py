@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 from textual.binding import Binding
@@ -13,19 +11,17 @@ from algorithms.context import Box
 from hough_tui.ui.drawing.axes import Axis, figures, foot
 from hough_tui.ui.drawing.palette import Palette, ink
 from hough_tui.ui.drawing.viewport import Limits, Viewport
-from hough_tui.ui.widgets.chart import KEY_ZOOM, Chart, Drawn
+from hough_tui.ui.widgets.chart import Drawn
 from hough_tui.ui.widgets.plane_scene import Label, PlaneScene, PlaneTrack, Words, legend, painted, styles
+from hough_tui.ui.widgets.scatter import NOTHING, Scatter
 
 __all__ = ["Plane", "PlaneScene", "PlaneTrack"]
-
-REACH = 2.0
-"""Cells within which a click finds a plot."""
 
 EMPTY = PlaneScene(np.empty((0, 2)), np.empty(0, np.int32), Box((0.0, 0.0), (1.0, 1.0)), "")
 
 
-class Plane(Chart):
-    """A picture of plots and tracks, north up.
+class Plane(Scatter):
+    """A picture of plots and tracks: north up, or a projection of space.
 
     `n` and `N` step through the plots that are lit up, where there are any, and through all of
     them otherwise. A click chooses a plot, one on a label or a double click a track.
@@ -40,12 +36,37 @@ class Plane(Chart):
         Binding("minus", "zoom(-1)", "Zoom out", show=False, id="plane.zoom-out"),
         Binding("0", "fit", "Fit", show=False, id="plane.fit"),
         Binding("e", "toggle_scale", "Equal scales", show=False, id="plane.equal-scales"),
-        Binding("n", "next_plot(1)", "Next plot", id="plane.next-plot"),
-        Binding("N", "next_plot(-1)", "Previous plot", show=False, id="plane.previous-plot"),
+        Binding("n", "next_point(1)", "Next plot", id="plane.next-plot"),
+        Binding("N", "next_point(-1)", "Previous plot", show=False, id="plane.previous-plot"),
         Binding("t", "next_track(1)", "Next track", id="plane.next-track"),
         Binding("T", "next_track(-1)", "Previous track", show=False, id="plane.previous-track"),
         Binding("enter", "choose", "Choose plot", id="plane.choose"),
     ]
+
+    class PlotHighlighted(Message):
+        """The cursor was moved to a plot."""
+
+        def __init__(self, plane: Plane, index: int) -> None:
+            super().__init__()
+            self.plane = plane
+            self.index = index
+
+        @property
+        def control(self) -> Plane:
+            """The plane whose cursor it is."""
+            return self.plane
+
+    class ViewMoved(Message):
+        """Another part of the plane is in view."""
+
+        def __init__(self, plane: Plane) -> None:
+            super().__init__()
+            self.plane = plane
+
+        @property
+        def control(self) -> Plane:
+            """The plane."""
+            return self.plane
 
     class PlotChosen(Message):
         """A plot was chosen, by its row in the scene."""
@@ -77,16 +98,16 @@ class Plane(Chart):
         super().__init__(name=name, id=id, classes=classes)
         self._scene = EMPTY
         self._home = EMPTY.home()
-        self._lit: NDArray[np.int64] = np.empty(0, np.int64)
-        self._cursor: int | None = None
         self._track: int | None = None
         self._labels: list[Label] = []
         self._has_equal_scales = False
 
     @property
-    def cursor(self) -> int | None:
-        """The plot under the cursor."""
-        return self._cursor
+    def points(self) -> NDArray[np.float64]:
+        return self._scene.position
+
+    def tell(self, point: int) -> None:
+        self.post_message(self.PlotHighlighted(self, point))
 
     @property
     def track(self) -> int | None:
@@ -104,17 +125,9 @@ class Plane(Chart):
         if scene.limits != before.limits:
             self._limits = None
         if not np.array_equal(scene.position, before.position, equal_nan=True):
-            self._lit, self._cursor = np.empty(0, np.int64), None
+            self._lit, self._cursor = NOTHING, None
         self._track = None
         self.changed()
-
-    def highlight(self, plots: Sequence[int] | NDArray[np.integer]) -> None:
-        """Light up plots, by their rows in the scene; none of them to put all out."""
-        lit = np.unique(np.asarray(plots, np.int64))
-        lit = lit[(lit >= 0) & (lit < len(self._scene.position))]
-        if not np.array_equal(lit, self._lit):
-            self._lit = lit
-            self.changed()
 
     def choose_track(self, index: int | None) -> None:
         """Mark a track as chosen; None for none."""
@@ -123,6 +136,24 @@ class Plane(Chart):
         if index != self._track:
             self._track = index
             self.changed()
+
+    def look_at(self, limits: Limits | None) -> None:
+        before = self._limits
+        super().look_at(limits)
+        if self._limits != before:
+            self.post_message(self.ViewMoved(self))
+
+    def follow(self, other: Plane) -> None:
+        """Show the part of a shared axis that another plane shows, and tell nobody."""
+        shown = dict(zip(other._scene.names, _sides(other.limits), strict=True))
+        whole = dict(zip(other._scene.names, _sides(other.home()), strict=True))
+        sides = []
+        for name, own, own_whole in zip(
+            self._scene.names, _sides(self.limits), _sides(self.home()), strict=True
+        ):
+            is_whole = name in shown and shown[name] == whole[name]
+            sides.append(own_whole if is_whole else shown.get(name, own))
+        super().look_at(Limits(*sides[0], *sides[1]))
 
     def home(self) -> Limits:
         return self._home
@@ -137,7 +168,8 @@ class Plane(Chart):
         return max(1e-5 * (right - left), resolution), max(1e-5 * (top - bottom), resolution)
 
     def axes(self, limits: Limits) -> tuple[Axis, Axis]:
-        unit = self._scene.unit
+        scene = self._scene
+        unit = f"{scene.names[0]} [{scene.unit}]" if scene.is_projection else scene.unit
         return Axis(limits.left, limits.right, unit), Axis(limits.bottom, limits.top, unit)
 
     def adapted(self, viewport: Viewport) -> Viewport:
@@ -153,44 +185,19 @@ class Plane(Chart):
         if at_label:
             self._take_track(at_label[0])
         elif times > 1:
-            near = self._nearest([track.path for track in self._scene.tracks], row, column)
+            near = self.nearest([track.path for track in self._scene.tracks], row, column)
             if near is not None:
                 self._take_track(near)
         else:
             plots = self._scene.position[:, None, :]
-            near = self._nearest(list(plots), row, column)
+            near = self.nearest(list(plots), row, column)
             if near is not None:
-                self._move_to(near)
+                self.move_to(near)
                 self.post_message(self.PlotChosen(self, near))
-
-    def action_pan(self, across: float, down: float) -> None:
-        self.pan(across, down)
-
-    def action_zoom(self, steps: int) -> None:
-        view = self.viewport
-        x, y = view.x(0.5 * view.width), view.y(0.5 * view.height)
-        if self._cursor is not None:
-            place = self._scene.position[self._cursor].tolist()
-            if view.limits.holds(*place):
-                x, y = place
-        self.zoom(KEY_ZOOM**steps, x, y)
 
     def action_toggle_scale(self) -> None:
         self._has_equal_scales = not self._has_equal_scales
         self.changed()
-
-    def action_next_plot(self, step: int) -> None:
-        finite = np.flatnonzero(np.isfinite(self._scene.position).all(axis=1))
-        plots = np.intersect1d(self._lit, finite) if len(self._lit) else finite
-        if not len(plots):
-            return
-        if self._cursor is None:
-            place = 0 if step > 0 else -1
-        else:
-            # The next one even where the cursor is on none of them.
-            place = int(np.searchsorted(plots, self._cursor, "right" if step > 0 else "left"))
-            place = (place if step > 0 else place - 1) % len(plots)
-        self._move_to(int(plots[place]))
 
     def action_next_track(self, step: int) -> None:
         count = len(self._scene.tracks)
@@ -206,55 +213,39 @@ class Plane(Chart):
         self.choose_track(index)
         self.post_message(self.TrackChosen(self, index))
 
-    def _move_to(self, plot: int) -> None:
-        """Put the cursor on a plot and bring it into view."""
-        if plot != self._cursor:
-            self._cursor = plot
-            self.changed()
-        view = self.viewport
-        x, y = self._scene.position[plot].tolist()
-        if not view.limits.holds(x, y):
-            bounds = self.bounds()
-            x, y = min(max(x, bounds.left), bounds.right), min(max(y, bounds.bottom), bounds.top)
-            self.look_at(view.showing(x, y).limits)
-
-    def _nearest(self, groups: list[NDArray[np.float64]], row: int, column: int) -> int | None:
-        """Return which group has the point nearest to a cell, of equals the last; None beyond the reach."""
-        view = self.viewport
-        if not groups:
-            return None
-        points = np.concatenate(groups)
-        group = np.repeat(np.arange(len(groups)), [len(one) for one in groups])
-        with np.errstate(over="ignore"):
-            columns, rows = view.column(points[:, 0]), view.row(points[:, 1])
-        near = np.flatnonzero(np.hypot(np.floor(columns) - column, np.floor(rows) - row) <= REACH)
-        if not len(near):
-            return None
-        distance = np.hypot(columns[near] - (column + 0.5), rows[near] - (row + 0.5))
-        return int(group[near[len(near) - 1 - int(np.argmin(distance[::-1]))]])
-
     def _words(self, colours: Palette, viewport: Viewport, width: int) -> Words:
         """Return the line at the foot: the chosen plot or track, or else the legend."""
         scene, plot = self._scene, self._cursor
         words: Words = []
+        if scene.is_projection:
+            words.append((f"{''.join(scene.names)} ", ink(colours.text, bold=True)))
         if plot is not None:
             limits = viewport.limits
             step = (limits.right - limits.left) / max(1, viewport.width)
             x, y = figures(scene.position[plot].tolist(), 10.0 ** np.floor(np.log10(step) - 0.5))
+            across, up = scene.names
             words.append((f"plot {plot} ", ink(colours.lit, bold=True)))
-            words.append((f" scan {scene.scan[plot]}  x {x}  y {y} {scene.unit}", ink(colours.text)))
+            words.append(
+                (f" scan {scene.scan[plot]}  {across} {x}  {up} {y} {scene.unit}", ink(colours.text))
+            )
             if scene.origin is not None:
                 origin = int(scene.origin[plot])
                 words.append((f"  target {origin}" if origin >= 0 else "  clutter", ink(colours.text)))
         if self._track is not None:
             track = scene.tracks[self._track]
-            words.append(("   " if words else "", None))
+            words.append(("   " if plot is not None else "", None))
             words.append((f"track {track.label or self._track} ", ink(colours.lit, bold=True)))
             words.append((f" {track.state}, {len(track.path)} plots", ink(colours.track(track.state))))
-        return words or legend(scene, colours, width)
+        if plot is None and self._track is None:
+            words += legend(scene, colours, width - sum(len(text) for text, _ in words))
+        return words
 
     def _hidden(self, viewport: Viewport, colours: Palette) -> Words:
         """Return how many plots lie outside the view."""
         inside = viewport.limits.holds(self._scene.position[:, 0], self._scene.position[:, 1])
         hidden = len(self._scene.position) - int(np.count_nonzero(inside))
         return [(f"{hidden:,} out of view", ink(colours.muted))] if hidden else []
+
+
+def _sides(limits: Limits) -> tuple[tuple[float, float], tuple[float, float]]:
+    return (limits.left, limits.right), (limits.bottom, limits.top)

@@ -12,6 +12,7 @@ from rich.style import Style
 
 from algorithms.context import Box
 from hough_tui.ui.drawing.braille import Canvas
+from hough_tui.ui.drawing.graticule import Figure, Sector, graticule
 from hough_tui.ui.drawing.palette import Palette, ink
 from hough_tui.ui.drawing.viewport import Limits, Viewport
 
@@ -37,8 +38,8 @@ AGES = 4
 MOST_LABELS = 40
 """More labels than these would hide what they are for."""
 
-DASH = 3
-"""Dots of a dash of a true path."""
+DASH, RING_DASH = 3, 1
+"""Dots of a dash of a true path, and of rings and spokes."""
 
 TARGET_SIZE = 2
 """Side of the plot of a target, in dots; that of clutter is one dot."""
@@ -74,13 +75,17 @@ class PlaneScene:
 
     Attributes
     ----------
-    position : float64 (n, 2), the plots; of 3-D plots the plane shows x and y
+    position : float64 (n, 2), the plots; of 3-D plots without further words the plane shows x and y
     scan : int32 (n,), their scans
     limits : the region
     unit : of length
     origin : int32 (n,), the target that caused each plot, −1 for clutter; None where it is not known
     truth : the true paths, each float64 (k, 2)
     tracks : the tracks
+    sectors : what polar sensors see; rings and spokes are drawn about their stations
+    names : what the axes are called
+    is_projection : whether it is one of the planes on which space is projected
+    is_framed : whether the region has a frame
     """
 
     position: Array
@@ -90,6 +95,10 @@ class PlaneScene:
     origin: NDArray[np.int32] | None = None
     truth: tuple[Array, ...] = ()
     tracks: tuple[PlaneTrack, ...] = ()
+    sectors: tuple[Sector, ...] = ()
+    names: tuple[str, str] = ("x", "y")
+    is_projection: bool = False
+    is_framed: bool = True
 
     def __post_init__(self) -> None:
         given = np.asarray(self.position, float)
@@ -193,9 +202,14 @@ def painted(
     track : the chosen track
     """
     canvas = Canvas(viewport)
+    round_stations = graticule(scene.sectors, viewport)
+    canvas.lines(round_stations.lines, [RULE] * len(round_stations.lines), RING_DASH)
+    canvas.lines(round_stations.edges, [RULE] * len(round_stations.edges))
+    canvas.as_ground()
     (west, south), (east, north) = scene.limits.lower[:2], scene.limits.upper[:2]
     corners = np.array([(west, south), (east, south), (east, north), (west, north), (west, south)])
-    canvas.lines([corners], [RULE])
+    if scene.is_framed:
+        canvas.lines([corners], [RULE])
     is_target, age = scene.is_target, scene.age
     canvas.points(scene.position[~is_target], CLUTTER + age[~is_target])
     canvas.points(scene.position[is_target], TARGET + age[is_target], TARGET_SIZE)
@@ -223,7 +237,22 @@ def painted(
         canvas.write(
             label.row, label.column, label.words, CURSOR if label.track == track else layers[label.track]
         )
+    _write_figures(canvas, round_stations.figures)
     return canvas, labels
+
+
+def _write_figures(canvas: Canvas, given: Sequence[Figure]) -> None:
+    """Write the figures of rings and spokes where they cover nothing but these, or not at all."""
+    viewport = canvas.viewport
+    for figure in given:
+        for x, y in figure.places.tolist():
+            if not viewport.limits.holds(x, y):
+                continue
+            row, column = int(viewport.row(y)), int(viewport.column(x)) - len(figure.words) // 2
+            # A blank on each side keeps figures apart.
+            if canvas.is_ground(row, column - 1, len(figure.words) + 2):
+                canvas.write(row, column, figure.words, RULE)
+                break
 
 
 def _labelled(canvas: Canvas, tracks: Sequence[PlaneTrack], chosen: int | None) -> list[Label]:

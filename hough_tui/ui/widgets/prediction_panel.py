@@ -244,7 +244,7 @@ class PredictionPanel(VerticalScroll, can_focus=False, inherit_bindings=False):
 def spread_words(shown: VotePicture, unit: str) -> str:
     """Return what the angle between line and row does to the share of votes in the home cell."""
     return (
-        f"Share in the home cell over all θ: mean {percent(shown.mean)}%, best {percent(shown.most)}% (line "
-        f"in a row), worst {percent(shown.least)}% (midway between two, the extent adds "
+        f"Share in the home cell over all θ: mean {percent(shown.mean)} %, best {percent(shown.most)} % "
+        f"(line in a row), worst {percent(shown.least)} % (midway between two, the extent adds "
         f"±{significant(shown.most_spread)} {unit})."
     )

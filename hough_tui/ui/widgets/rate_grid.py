@@ -14,7 +14,7 @@ from textual.widgets import DataTable
 
 from hough_tui.reports.layout import REPEATED, Column
 from hough_tui.reports.numerals import NONE
-from hough_tui.reports.rates import rate_sheets
+from hough_tui.reports.rates import BY_TARGET, SUCCESS, rate_sheets
 from hough_tui.ui.widgets.vim_table import VimTable, cell_text
 
 Row = Mapping[str, Any]
@@ -44,6 +44,8 @@ class RateGrid(VimTable):
         self._widths: list[int] = []
         self._sorted_by: str | None = None
         self._is_falling = False
+        self._rows: Sequence[Row] = ()
+        self._has_targets_first = False
 
     @property
     def sorted_by(self) -> tuple[str, bool] | None:
@@ -57,7 +59,10 @@ class RateGrid(VimTable):
 
     def show_rows(self, rows: Sequence[Row]) -> None:
         """Show result rows; those that are there already keep their place on the screen."""
+        self._rows = rows
         columns = rate_columns(rows)
+        if self._has_targets_first:
+            columns = with_targets_first(columns)
         self.show_columns(columns, identifying_columns(columns, rows))
 
     def show_columns(self, columns: Sequence[Column], identifying: int = 0) -> None:
@@ -92,6 +97,15 @@ class RateGrid(VimTable):
         names = [None, *(column.name for column in self._shown)]
         here = names.index(self._sorted_by) if self._sorted_by in names else 0
         self.sort_by(names[(here + step) % len(names)])
+
+    def turn_targets(self) -> bool:
+        """Put success by target beside success, or back to the end; return whether there is any."""
+        if with_targets_first(rate_columns(self._rows)) == rate_columns(self._rows):
+            return False
+        self._has_targets_first = not self._has_targets_first
+        self.show_rows(self._rows)
+        self.scroll_to(x=0, animate=False)
+        return True
 
     def action_turn(self) -> None:
         """Sort the other way round."""
@@ -192,6 +206,14 @@ def rate_columns(rows: Sequence[Row]) -> list[Column]:
         counts = tuple(f"{row['trials']:,}" for row in rows)
         columns.insert(identifying_columns(columns, rows), Column("trials", counts, quiet=True))
     return columns
+
+
+def with_targets_first(columns: Sequence[Column]) -> list[Column]:
+    """Return columns with those of success by target beside that of success."""
+    targets = [column for column in columns if column.called == BY_TARGET]
+    others = [column for column in columns if column.called != BY_TARGET]
+    place = 1 + next((index for index, column in enumerate(others) if column.name == SUCCESS), -1)
+    return [*others[:place], *targets, *others[place:]]
 
 
 def identifying_columns(columns: Sequence[Column], rows: Sequence[Row]) -> int:

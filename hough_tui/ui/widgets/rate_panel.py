@@ -60,6 +60,7 @@ class RatePanel(Widget):
         Binding("m", "metric(1)", "Metric", id="rates.metric"),
         Binding("M", "metric(-1)", "Metric before", id="rates.metric-before", show=False),
         Binding("t", "by_trial", "False % by trial", id="rates.by-trial", show=False),
+        Binding("o", "by_target", "Success by target", id="rates.by-target", show=False),
         Binding("down,j", "row(1)", "Next row", id="rates.next-row", show=False),
         Binding("up,k", "row(-1)", "Previous row", id="rates.previous-row", show=False),
         Binding("e", "export", "Export", id="rates.export", show=False),
@@ -162,6 +163,13 @@ class RatePanel(Widget):
             self.action_switch()
 
     # The table
+
+    def action_by_target(self) -> None:
+        """Put success by target beside success, or back to the end of the table."""
+        if not self.grid.turn_targets():
+            self.notify("No scenario has several targets: success is that of the one", markup=False)
+        elif not self.query_one("#rates").display:
+            self.action_switch()
 
     def action_row(self, step: int) -> None:
         """Choose another row while the focus is on the chart."""

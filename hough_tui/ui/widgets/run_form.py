@@ -133,7 +133,7 @@ def asked_words(asked: Asked) -> str:
     """Return how much is asked for."""
     chosen = [experiment for experiment in asked.given.experiments if experiment.name in asked.experiments]
     cells = [
-        math.prod(len(asked.given.chosen(experiment, part)) for part in experiment.PARTS)
+        math.prod(len(asked.given.chosen(experiment, part)) for part in experiment.parts)
         * math.prod(map(len, experiment.sweep.values()))
         for experiment in chosen
     ]
@@ -151,7 +151,7 @@ def asked_text(asked: Asked) -> str:
             continue
         entries, *_, worlds = (
             ", ".join(element.name for element in asked.given.chosen(experiment, part))
-            for part in reversed(experiment.PARTS)
+            for part in reversed(experiment.parts)
         )
         swept = "".join(
             f" · {field_name(key)} {', '.join(map(as_given, values))}"

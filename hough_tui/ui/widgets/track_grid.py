@@ -31,6 +31,9 @@ HEADINGS = {
 }
 """Columns and how many characters their values need."""
 
+IN_SPACE = {"climb {unit}/s": 7}
+"""Columns of tracks in space in place of those of the line in the plane."""
+
 STATES = {FALSE: ("false", "red"), FINDER: ("found", "green"), DUPLICATE: ("duplicate", "yellow")}
 
 
@@ -67,21 +70,23 @@ class TrackGrid(DataTable[Text]):
         tracks = seen.tracks
         self._is_filling = True
         self.clear(columns=True)
-        for heading, width in HEADINGS.items():
+        is_in_space = tracks.velocity.shape[1] == 3
+        headings = HEADINGS
+        if is_in_space:
+            lines = ("θ °", "ρ {unit}")
+            headings = {name: width for name, width in HEADINGS.items() if name not in lines} | IN_SPACE
+        for heading, width in headings.items():
             label = Text(heading.format(unit=unit), justify="left" if heading == "is" else "right")
             self.add_column(label, width=max(width, label.cell_len))
         for index in range(min(len(tracks), MOST_ROWS)):
             state = ("–", "dim") if seen.state is None else STATES[int(seen.state[index])]
             speed, heading = _course(tracks.velocity[index])
-            cells = (
-                f"{index}",
-                f"{tracks.score[index]:g}",
-                f"{len(tracks.plots[index])}",
-                f"{math.degrees(tracks.theta[index]):.2f}",
-                f"{tracks.rho[index]:.2f}",
-                speed,
-                heading,
-            )
+            cells = [f"{index}", f"{tracks.score[index]:g}", f"{len(tracks.plots[index])}"]
+            if not is_in_space:
+                cells += [f"{math.degrees(tracks.theta[index]):.2f}", f"{tracks.rho[index]:.2f}"]
+            cells += [speed, heading]
+            if is_in_space:
+                cells.append(_climb(tracks.velocity[index]))
             first, *rest = (Text(cell, justify="right") for cell in cells)
             self.add_row(first, Text(state[0], style=state[1]), *rest)
         self._is_filling = False
@@ -99,3 +104,7 @@ def _course(velocity: np.ndarray) -> tuple[str, str]:
         return "–", "–"
     heading = math.degrees(math.atan2(velocity[0], velocity[1])) % 360.0
     return f"{math.hypot(*velocity):.3g}", f"{heading:.1f}"
+
+
+def _climb(velocity: np.ndarray) -> str:
+    return f"{velocity[-1]:.3g}" if np.isfinite(velocity).all() else "–"

@@ -132,6 +132,12 @@ def test_a_search_of_ones_own():
     assert (np.diff(wanted.rho_step) > 0).all()
 
 
+def test_no_column_is_as_wide_as_the_region():
+    # At 9 of noise the widest columns that are tried elsewhere would be 180 wide.
+    wide = replace(QUESTION, lines=(TargetLine(9.0, 15, 19.6),))
+    assert default_search(wide).rho_step.max() == 90.0
+
+
 def test_a_line_without_noise_across_it_does_not_hinder():
     lines = (TargetLine(0.1, 15, 19.6), TargetLine(0.0, 15, 19.6))
     assert advise(replace(QUESTION, lines=lines)).prediction.p_detection > 0.4

@@ -100,6 +100,29 @@ def test_the_line_of_a_motion():
     assert line.sigma == pytest.approx(math.hypot(0.1 * cosine, 0.2 * sine))
 
 
+@pytest.mark.parametrize(
+    ("velocity", "noise"), [((0.3, 0.0), (0.1, 0.0)), ((-0.3, 0.0), (0.1, 0.0)), ((0.0, 0.3), (0.0, 0.1))]
+)
+def test_a_line_along_the_only_axis_with_noise_has_none_across(velocity, noise):
+    assert TargetLine.of_motion((40.0, 20.0), velocity, 15, 4.0, noise).sigma == 0.0
+
+
+def test_the_share_in_the_home_cell_is_that_of_the_votes_there_are():
+    line = TargetLine.of_motion((40.0, 20.0), (0.3, 0.18), 15, 4.0, (0.1, 0.1))
+    shares = [
+        predict(Question((line,), probability, Clutter(), SQUARE), Grid(90, 400, -140.0, 0.7), 5).share
+        for probability in (0.0, 0.3, 1.0)
+    ]
+    assert shares == pytest.approx([shares[-1]] * 3)
+    assert shares[-1] > 0.5
+
+
+def test_a_cell_as_wide_as_the_region_holds_no_more_than_all_clutter():
+    line = TargetLine.of_motion((40.0, 20.0), (0.3, 0.18), 15, 4.0, (0.1, 0.1))
+    question = Question((line,), 0.9, Clutter((ClutterSource(50.0, SQUARE),)), SQUARE)
+    assert question.other_votes(line, 5000.0) == 50.0
+
+
 @pytest.mark.parametrize("speed", [(0.3, 0.18), (0.2, 0.0), (-0.01, 0.3), (0.2, 0.001), (0.2, -0.001)])
 @pytest.mark.parametrize("offset", [0.0, 0.5])
 def test_placed_votes_are_where_the_plots_vote(speed, offset):

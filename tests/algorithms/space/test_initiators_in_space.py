@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from algorithms.errors import RequestError
 from algorithms.initiators.registry import initiator
@@ -30,7 +31,7 @@ def approach():
     return load_set("par-table-2")
 
 
-def scene(*targets, radar=RADAR, rate=0, scans=4):
+def scene(*targets, radar=RADAR, further=(), rate=0, scans=4):
     return validated(
         Scenario,
         {
@@ -39,6 +40,7 @@ def scene(*targets, radar=RADAR, rate=0, scans=4):
             "scans": scans,
             "interval": 1,
             "sensor": radar,
+            "further_sensors": list(further),
             "clutter": [{"rate": rate, "over": "volume"}] if rate else [],
             "targets": [{"position": place, "velocity": speed} for place, speed in targets],
         },
@@ -168,6 +170,57 @@ def test_longer_batches_and_states(name):
     assert tracks.velocity.shape[1] == 3
     # 7 scans with about 100 m of noise across: some 20 m/s.
     np.testing.assert_allclose(tracks.velocity[best], [200, -100, 10], atol=80)
+
+
+BESIDE = {**RADAR, "position": [15000, 0, 0], "sigma_range": 20, "sigma_azimuth_deg": 0.6}
+"""A second radar, with other noise along other directions."""
+
+OPPOSITE = {**RADAR, "position": [-15000, 0, 0]}
+
+
+@pytest.mark.parametrize("name", INITIATORS)
+@pytest.mark.parametrize(
+    "further",
+    [
+        [{**BESIDE, "first_scan": 0.5}],
+        [{**BESIDE, "first_scan": 0.3, "period": 0.7}],
+        [BESIDE],
+        [BESIDE, OPPOSITE],
+    ],
+    ids=["half a scan later", "of another period", "at the same times", "three at the same times"],
+)
+def test_plots_of_several_sensors_make_one_track(name, further):
+    seen = scene(
+        ([0, 20000, 3000], [200, 100, 0]), ([8000, 25000, 3000], [-100, -200, -10]), further=further, rate=5
+    )
+    trials = 40
+    scores, tracks, _ = measured(seen, name, trials)
+    assert (scores.found.mean(axis=0) >= 0.95 - 4.0 * np.sqrt(0.05 * 0.95 / trials)).all()
+    assert scores.duplicates.sum() == 0
+    # Nearly every plot of every sensor belongs to its target's track.
+    held = (tracks.plots >= 0).sum(axis=1)
+    assert held.mean() >= 0.95 * 4 * (1 + len(further))
+
+
+def test_the_state_of_a_track_is_weighted_by_its_plots_own_noise():
+    # Two radars far apart, each good along its own line of sight: together they give a state that is as
+    # good as its covariance says, in units of it three for each of place and velocity.
+    seen = scene(([0, 20000, 3000], [200, 100, 0]), further=[{**BESIDE, "first_scan": 0.5}])
+    algorithm, squares, trials = initiator("hough-logic-3d"), [], 150
+    parameters = validated(algorithm.parameters, {"plots": 6}, "logic").resolved(seen.context)
+    drawn = draw(World.of(seen), 5, 0, trials)
+    for trial in range(trials):
+        plots = drawn.chunk.trial(trial)
+        tracks = algorithm.initiate(plots, seen.context, parameters)
+        rows = tracks.plots[0]
+        weight = np.linalg.inv(plots.covariance[rows])
+        design = np.stack([np.ones(len(rows)), plots.time[rows] - tracks.time])
+        normal = np.einsum("ik,jk,kab->iajb", design, design, weight).reshape(6, 6)
+        true = np.array([[0, 20000, 3000], [200, 100, 0]], dtype=float)
+        miss = (np.stack([tracks.position[0], tracks.velocity[0]]) - true).ravel()
+        squares.append(miss @ normal @ miss)
+    low, high = stats.chi2(6 * trials).ppf([0.0005, 0.9995])
+    assert low < np.sum(squares) < high
 
 
 @pytest.mark.parametrize("name", INITIATORS)

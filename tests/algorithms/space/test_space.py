@@ -57,6 +57,29 @@ def test_equal_places_are_within_reach_of_noise_alone():
         assert (len(pairs), every) == (found, 1)
 
 
+def test_the_latest_plot_of_a_scan_decides_how_far_is_searched():
+    # Within a scan times need not rise; those of a recording are as they are.
+    position = np.array([[0.0, 0.0, 0.0], [390.0, 0.0, 0.0], [790.0, 0.0, 0.0]])
+    time, scan = np.array([0.0, 1.0, 2.0]), np.array([0, 1, 1], np.int32)
+    for order in ([0, 1, 2], [0, 2, 1]):
+        pairs, _ = pairs_within_reach(
+            position[order], time[order], scan, np.zeros((3, 3, 3)), 50.0, 400.0, 0.0, 3
+        )
+        assert sorted(pairs.tolist()) == [[0, 1], [0, 2]]
+
+
+def test_plots_of_one_time_are_within_reach_where_noise_may_part_them():
+    # Of two sensors: their scans have two numbers and one time.
+    time, scan = np.zeros(3), np.array([0, 1, 1], np.int32)
+    position = np.array([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [5.0, 0.0, 0.0]])
+    covariance = np.tile(np.eye(3), (3, 1, 1))
+    # The standard deviation of their distance is √2.
+    pairs, every = pairs_within_reach(position, time, scan, covariance, 50.0, 400.0, 3.0, 3)
+    assert (pairs.tolist(), every) == ([[0, 1]], 2)
+    backwards = np.array([1.0, 0.0, 0.0])
+    assert len(pairs_within_reach(position, backwards, scan, covariance, 0.0, 400.0, 3.0, 3)[0]) == 0
+
+
 @steady
 @given(st.integers(0, 2**32))
 def test_components_and_pairs_by_their_first_plot(seed):
@@ -101,6 +124,31 @@ def test_coincident_projections_do_not_vote():
     assert np.isnan(theta[0])
     votes_of_pairs(position, np.array([[0, 1]]), np.arange(1), 0, 2, np.zeros(3), theta, distance)
     assert theta[0] == pytest.approx(math.pi / 2)
+
+
+def test_a_direction_is_below_a_half_turn_however_it_is_rounded():
+    # atan2 gives a negative angle so small that with π added it is π.
+    position = np.array([[0.0, 0.0, 3.0], [1.0, -1e-300, 4.0]])
+    theta, distance = np.empty(1), np.empty(1)
+    votes_of_pairs(
+        position, np.array([[0, 1]]), np.arange(1), 0, 1, np.array([0.0, 2.0, 0.0]), theta, distance
+    )
+    assert (theta[0], distance[0]) == (0.0, 2.0)
+
+
+def test_a_window_holds_both_its_edges():
+    theta, distance = np.array([0.5, 1.0]), np.array([1.0, 3.0])
+    for width, height, expected in ((0.5, 2.0, True), (0.4, 2.0, False), (0.5, 1.9, False)):
+        confirmed = np.zeros(2, bool)
+        confirm(theta, distance, 2, width, height, False, 2, confirmed, np.empty(2, np.int64), np.empty(2))
+        assert confirmed.all() == confirmed.any() == expected
+
+
+def test_fixed_cells_are_half_open():
+    theta, distance = np.array([0.5, 0.999, 1.0]), np.zeros(3)
+    confirmed = np.zeros(3, bool)
+    confirm(theta, distance, 3, 0.5, 1.0, True, 2, confirmed, np.empty(3, np.int64), np.empty(3))
+    assert confirmed.tolist() == [True, True, False]
 
 
 def confirmed_by_loop(theta, distance, width, height, least):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from algorithms.initiators.registry import initiator
-from hough_tui.experiments import chunks
+from hough_tui.experiments import chunks, engine
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import result
@@ -85,6 +85,28 @@ def test_a_cancelled_run_tells_what_it_finished():
     done = job.progress.done[job.progress.done > 0]
     assert [row["trials"] for row in rows] == done.tolist()
     assert result(job).document["complete"] is False
+
+
+def test_a_chunk_whose_trials_take_long_is_done_in_parts(monkeypatch):
+    # Time passes by the trials alone here.
+    now, parts = [0.0], []
+    run_chunk = engine.run_chunk
+
+    def slow(plan, shared, world, first, trials, plain):
+        yield from run_chunk(plan, shared, world, first, trials, plain)
+        now[0] += 0.02 * trials
+        parts.append((first, trials))
+
+    monkeypatch.setattr(engine, "run_chunk", slow)
+    monkeypatch.setattr(engine.time, "monotonic", lambda: now[0])
+    plan = plan_run([load_set("course-report")], experiments=["modified"], trials=25)
+    job = Job(plan, workers=1)
+    assert job.wait()
+    assert job.is_complete
+    assert max(trials for _, trials in parts) == 2
+    # Each trial of each of the three draws is done once, the one that loads the kernels aside.
+    done = [first + number for first, trials in parts[3:] for number in range(trials)]
+    assert done == [*range(25)] * 3
 
 
 def test_a_worker_that_fails_stops_the_run_and_says_why(monkeypatch):

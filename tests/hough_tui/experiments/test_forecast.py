@@ -65,6 +65,16 @@ def test_of_weighted_votes_the_plain_ones_are_predicted():
     assert "more plain votes than T1" in told.notes[0]
 
 
+def test_what_is_taken_for_something_simpler_is_said(course):
+    given = load_set("par-table-2")
+    entry = course.initiators[0]
+    assert forecast(entry, course.scenarios[0]).notes == ()
+    assert any(
+        "Assumed clutter: uniform over the region" in note
+        for note in forecast(entry, given.scenarios[0]).notes
+    )
+
+
 def test_a_picture_tells_the_spread_of_its_row(course):
     scenario, entry = course.scenarios[0], course.initiators[0]
     told = forecast(entry, scenario)

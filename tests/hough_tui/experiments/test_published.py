@@ -108,6 +108,14 @@ def test_a_rate_of_one_is_consistent_with_one_and_not_with_nine_tenths():
     assert is_consistent_rate(0.9, 100, 0.0005, np.ones(1000)) is False
 
 
+def test_no_interval_of_few_trials_reaches_below_0():
+    table = published_table("thesis-3-1")
+    job = Job(plan_table(table, 20), 2)
+    job.wait()
+    intervals = [row["ci95"] for row in compare(table, job)["rows"] if row["ci95"] is not None]
+    assert min(low for low, _ in intervals) == 0.0
+
+
 def test_an_unknown_table_is_named_with_those_known():
     with pytest.raises(RequestError, match="did you mean 'course-2-2'"):
         published_table("course-2-3")
@@ -162,7 +170,7 @@ def test_every_figure_has_its_cell_in_a_bundled_set():
         experiments = {experiment.name: experiment for experiment in given.experiments}
         for entry in table.entries:
             experiment = experiments[entry.experiment]
-            worlds, *_, methods = (given.chosen(experiment, part) for part in experiment.PARTS)
+            worlds, *_, methods = (given.chosen(experiment, part) for part in experiment.parts)
             assert entry.method in [found.name for found in methods]
             assert entry.world is None or entry.world in [found.name for found in worlds]
             assert set(entry.swept) == set(experiment.sweep)

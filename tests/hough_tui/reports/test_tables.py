@@ -71,8 +71,25 @@ def test_wider_terminals_show_more(rows):
     narrow, wide = (whole(drawn(width, rate_tables(rows, width)[0])) for width in (60, 160))
     assert "A wider terminal also shows" in narrow
     assert "A wider terminal also shows" not in wide
-    for heading in ("control", "duplic.", "θ RMSE", "ρ RMSE", "µs", "target 2"):
+    for heading in ("control", "duplic.", "θ RMSE", "ρ RMSE", "µs", "target 1", "target 2"):
         assert heading in wide
+
+
+def test_success_by_target_goes_before_other_columns_where_several_targets_differ(row):
+    named = {"targets": ["T1", "T2", None]}
+    alike = row(success_by_target=[0.95, 0.9, 0.94], **named)
+    unlike = row(success_by_target=[0.95, 0.1, 0.94], **named)
+    assert "T2" not in drawn(90, *rate_tables([alike], 90))
+    text = drawn(90, *rate_tables([alike, unlike], 90))
+    for heading in ("T1", "T2", "target 3"):
+        assert heading in text
+    assert "10.0" in text
+    # A name that not all rows use names no column.
+    other = row(success_by_target=[0.95, 0.1, 0.94], targets=["T1", "T4", None])
+    text = drawn(160, *rate_tables([unlike, other], 160))
+    assert "T1" in text
+    assert "target 2" in text
+    assert "T4" not in text
 
 
 def test_criteria_in_words(rows):

@@ -10,9 +10,13 @@ from typing import Any
 import pytest
 from rich.segment import Segment
 from textual import events
+from textual._context import active_app
+from textual.app import App
 from textual.css.query import NoMatches
 from textual.keys import _character_to_key
+from textual.message_pump import MessagePump
 from textual.pilot import Pilot
+from textual.timer import Timer
 from textual.widget import Widget
 from textual.widgets import Input, TabbedContent
 
@@ -24,8 +28,69 @@ from hough_tui.ui.forms.value_field import ValueField
 PATIENCE = 60.0
 """Seconds until a wait is given up: kernels may have to be compiled on a busy machine."""
 
+SHORT_PATIENCE = 1.0
+"""Seconds after which a pilot goes on though something works in the background, as without us."""
+
+CALM = 4
+"""Turns of the event loop without a message: what comes from another thread takes some to arrive."""
+
+SOON = 0.05
+"""Seconds of a delay that is waited for: fields and pictures gather what is typed for less than that."""
+
 Place = tuple[str | int, ...]
 Condition = Callable[[], Any]
+
+
+async def dealt_with(app: App[Any], patience: float = PATIENCE) -> None:
+    """Wait until every widget waits for its next message, and the screen shows what came of the last one.
+
+    Textual's pilot sends a message through every widget instead, and waits until the process idles:
+    that takes tens of milliseconds a key, and does not end while trials run.
+    """
+    limit = time.monotonic() + patience
+    calm = turns = 0
+    while calm < CALM and app._exception is None and app.screen_stack:
+        screen = app.screen
+        # The screen draws sixty times a second; nobody has to wait for that.
+        screen._on_timer_update()
+        await asyncio.sleep(0 if turns < 50 else 0.002)
+        turns += 1
+        is_calm = all(map(_is_waiting, (app, *screen.walk_children(with_self=True))))
+        calm = calm + 1 if is_calm else 0
+        if time.monotonic() > limit:
+            raise AssertionError("something does not come to an end")
+
+
+def _is_waiting(pump: MessagePump) -> bool:
+    """Return whether a widget has dealt with all messages, is not in the middle of one, and puts none off."""
+    if not pump._running:
+        return True
+    ready = pump._message_queue.ready_event
+    if ready.is_set() or all(waiter.done() for waiter in ready._waiters):
+        return False
+    return not any(map(_is_due_soon, pump._timers))
+
+
+def _is_due_soon(timer: Timer) -> bool:
+    task = timer._task
+    return timer._repeat == 0 and timer._interval <= SOON and task is not None and not task.done()
+
+
+async def idle(min_sleep: float = 0.0, max_sleep: float = SHORT_PATIENCE) -> None:
+    """Wait until a message has had its effect, and what was begun by it in the background too."""
+    app = active_app.get()
+    limit = time.monotonic() + max_sleep
+    await dealt_with(app)
+    while any(worker.is_running for worker in app.workers) and time.monotonic() < limit:
+        await asyncio.sleep(0.01)
+        await dealt_with(app)
+
+
+@pytest.fixture(autouse=True)
+def quick_pilot(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let pilots wait for messages rather than for an idle processor."""
+    monkeypatch.setattr("textual.app.wait_for_idle", idle)
+    monkeypatch.setattr("textual.pilot.wait_for_idle", idle)
 
 
 class User:
@@ -47,7 +112,8 @@ class User:
                 raise self.app._exception
             if time.monotonic() > limit:
                 raise AssertionError(f"in vain, before this screen:\n{self.text}")
-            await self.pilot.pause(0.02)
+            await asyncio.sleep(0.02)
+            await dealt_with(self.app)
 
     async def sees(self, *words: str) -> None:
         """Wait until words are on the screen."""
@@ -59,13 +125,8 @@ class User:
         await self.settle()
 
     async def settle(self) -> None:
-        """Wait until what was sent has been dealt with, and what came of it too.
-
-        The pilot waits until the process is idle, which it is not while trials run.
-        """
-        for _ in range(3):
-            await self.pilot._wait_for_screen()
-            await self.pilot.pause(0)
+        """Wait until what was sent has been dealt with, and what came of it too."""
+        await dealt_with(self.app)
 
     async def still(self) -> str:
         """Wait until nothing works behind the screen and it stays as it is; return what is on it."""
@@ -73,7 +134,8 @@ class User:
         while times < 3:
             await self.until(lambda: not [worker for worker in self.app.workers if worker.is_running])
             await self.settle()
-            await self.pilot.pause(0.05)
+            await asyncio.sleep(0.05)
+            await self.settle()
             times = times + 1 if self.text == seen else 0
             seen = self.text
         return seen

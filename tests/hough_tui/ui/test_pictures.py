@@ -15,6 +15,8 @@ import hough_tui.experiments.store as store
 import hough_tui.experiments.vote_cost as vote_cost
 from hough_tui.experiments.engine import Job
 from hough_tui.ui.widgets.heatmap import Heatmap
+from hough_tui.ui.widgets.pair_votes import PairVotes
+from hough_tui.ui.widgets.plane import Plane
 
 SIZES = [(80, 24), (160, 48)]
 
@@ -84,3 +86,25 @@ def test_the_views_look_as_they_did(drive, still_clocks, picture, size):
         await picture(user, "results")
 
     drive(journey, size=size)
+
+
+@pytest.mark.parametrize("size", SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
+def test_trials_in_space_look_as_they_did(drive, still_clocks, picture, size):
+    async def journey(user):
+        view = await user.go("f2")
+        if not view.query_one(Plane).size.area:
+            await user.press("f9")
+        await user.press("f10", "f10", "f10", "f10", "f10")
+        await user.sees("together, trial 0")
+        await picture(user, "rings")
+        panel = (await user.go("f4")).query_one("LookPanel")
+        await user.press("s", "s", "s", "s", "s", "i")
+        await user.sees("cht on together, trial 0")
+        panel.take_focus()
+        await user.press("t")
+        await picture(user, "projections")
+        if not panel.query_one(PairVotes).size.area:
+            await user.press("z", "v")
+            await picture(user, "votes")
+
+    drive(journey, "par-table-2", size=size)

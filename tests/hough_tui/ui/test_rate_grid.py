@@ -143,6 +143,27 @@ def test_rows_of_several_experiments_name_them():
     assert rate_columns([]) == []
 
 
+def test_success_by_target_stands_beside_success_when_asked_for():
+    grid = RateGrid()
+
+    async def journey(user):
+        grid.show_rows([row(5)])
+        assert not grid.turn_targets()
+        grid.show_rows([row(5, success_by_target=[0.5, 1.0, 0.25]), row(10)])
+        headings = [" ".join(column.label.plain.split()) for column in grid.ordered_columns]
+        assert headings[-1] == "target 3 %"
+        assert grid.turn_targets()
+        await user.pilot.pause()
+        names = [column.name for column in grid._shown]
+        place = names.index("success %")
+        assert names[place + 1 : place + 4] == ["target 1 %", "target 2 %", "target 3 %"]
+        assert shown(grid, place + 3) == ["25.0", "–"]
+        assert grid.turn_targets()
+        assert [column.name for column in grid._shown][-3:] == ["target 1 %", "target 2 %", "target 3 %"]
+
+    mounted(grid, journey)
+
+
 def test_a_row_without_trials_can_be_shown(cell):
     assert [column.name for column in rate_columns([cell.blank()])][:3] == [
         "initiator", "scans", "success %"
