@@ -200,7 +200,7 @@ def caption(seen: ClusterLook, swept: Mapping[str, int | float] | None = None) -
     parts = [Part(f"{seen.name} on {picture.scene.name}, {words}", short=f"{seen.name}, {words}")]
     if swept is not None:
         values = ", ".join(f"{field_name(key)} {as_given(value)}" for key, value in swept.items())
-        parts.append(Part(f"of a run: {values}" if values else "of a run", 1))
+        parts.append(Part(f"of a run: {values}", short=values) if values else Part("of a run", 1))
     idle = int(((clusters.label == NONE) | ~clusters.kept).sum())
     parts.append(Part(f"{len(clusters.points):,} points, {idle:,} in no plot", 2, f"{idle:,} in no plot"))
     parts.append(Part(f"seed {picture.seed}", 3))

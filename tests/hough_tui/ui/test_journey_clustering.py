@@ -1,8 +1,9 @@
-"""Clustering: draws of scenes, step by step, and the forms beside them."""
+"""Clustering: draws of scenes, step by step, the forms beside them, and the way from rates to a trial."""
 
 import numpy as np
 import pytest
 
+from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.scene_look import cluster_look, scene_picture
 from hough_tui.ui.views.cluster_panel import ClusterPanel
 from hough_tui.ui.widgets.cluster_plane import ClusterPlane
@@ -301,5 +302,122 @@ def test_what_a_mode_cannot_do_is_said(drive):
         await user.press("home", "shift+end", "delete")
         await user.type("99")
         await user.sees("k-means on same-doppler, trial 0", "k-means is to find 99 targets")
+
+    drive(journey, SET, size=(160, 48))
+
+
+def test_from_steps_and_an_edit_to_the_worst_trial_of_a_run(drive):
+    async def journey(user):
+        panel = await clustering(user, INTERFERENCE)
+        view = user.view
+        await user.press(".", ".", ",")
+        assert panel.step == 0
+        form = view.form("clusterings").query_one("ModelForm")
+        path = ("clusterings", 0, "doppler_extent")
+        form.focus_field(path)
+        await user.press("home", "shift+end", "delete")
+        await user.type("4")
+        await user.until(lambda: len(panel._seen.found.clusters) > 2)
+        await user.press("ctrl+z")
+        await user.until(lambda: len(panel._seen.found.clusters) == 2)
+
+        monte_carlo = await user.go("f6")
+        await user.sees("Each way to cluster on each kind of scene")
+        monte_carlo.query("RunField").first().focus()
+        await user.type("40")
+        await user.press("f5")
+        rates = monte_carlo.query_one("RatePanel")
+        await user.until(lambda: not monte_carlo.is_at_work and rates.display and rates.shown)
+        await user.sees("exact", "RMSE", "1,120 trials in")
+        rows = rates.shown.rows
+        index = next(
+            place
+            for place, row in enumerate(rows)
+            if (row["scene"], row["clustering"]) == ("interference", "corrected-patent")
+        )
+        assert rows[index]["count_exact_rate"] < 0.5
+        rates.grid.focus()
+        rates.grid.move_to(str(index))
+        await user.press("enter")
+        await user.screen("TrialsScreen")
+        await user.sees("interference · corrected-patent", "clusters", "excess", "with too many")
+        listed = user.app.screen.query_one("TrialList")
+        columns = rates.shown.trials(index).columns
+        worst = np.abs(columns.excess).max()
+        assert abs(columns.excess[listed.trial]) == worst
+        trial = listed.trial
+        await user.press("s")
+        await user.until(lambda: listed.sorted_by == "trial")
+        await user.until(lambda: listed.trial == 0)
+        await user.press("s", "s", "s")
+        await user.until(lambda: listed.sorted_by == "failed first" and listed.trial == trial)
+        await user.press("enter")
+        await user.until(lambda: user.tab == "clustering")
+        await user.until(lambda: panel._seen.picture.trial == trial)
+        assert (panel._seen.name, panel._seen.picture.scene.name) == ("corrected-patent", "interference")
+        assert len(panel._seen.found.clusters) - 2 == columns.excess[trial]
+        await user.sees("of a run")
+
+    drive(journey, SET, size=(160, 48))
+
+
+def test_a_trial_opens_with_the_values_that_were_swept(drive):
+    async def journey(user):
+        panel = await clustering(user)
+        given = user.app.workspace.given
+        data = given.experiments[0].model_copy(
+            update={"sweep": {"clustering.range_extent": [16.0, 4.0]}, "clusterings": ["recommended"]}
+        )
+        cell = plan_run([given.model_copy(update={"experiments": [data]})]).cells[1]
+        assert cell.swept == {"clustering.range_extent": 4.0}
+        user.main.open_trial(type("Opened", (), {"cell": cell, "trial": 7})())
+        await user.until(lambda: panel._seen.picture.trial == 7)
+        assert panel._seen.found.parameters.range_extent == 4.0
+        await user.sees("range_extent 4")
+        # The set's own values are shown again when something is edited or chosen.
+        await user.press("i")
+        await user.until(lambda: panel._seen.name == "corrected-patent")
+        assert panel._seen.found.parameters.range_extent == 16.0
+
+    drive(journey, SET, size=(160, 48))
+
+
+def test_rates_of_clustering_have_charts_of_their_own_metrics(drive):
+    async def journey(user):
+        await clustering(user)
+        monte_carlo = await user.go("f6")
+        monte_carlo.query("RunField").first().focus()
+        await user.type("20")
+        await user.press("f5")
+        rates = monte_carlo.query_one("RatePanel")
+        await user.until(lambda: not monte_carlo.is_at_work and rates.display and rates.shown)
+        chart = rates.chart
+        assert chart.metric == "count_exact_rate"
+        seen = [chart.metric]
+        rates.grid.focus()
+        for _ in range(4):
+            await user.press("m")
+            seen.append(chart.metric)
+        assert {"too_few_rate", "too_many_rate", "excess_per_trial"} <= set(seen)
+        await user.press("t")
+        assert "have no tracks" in user.notes[-1]
+        assert chart.metric == seen[-1]
+
+    drive(journey, SET, size=(160, 48))
+
+
+def test_a_new_experiment_is_of_the_kind_that_is_chosen(drive):
+    async def journey(user):
+        await clustering(user)
+        monte_carlo = await user.go("f6")
+        await user.press("f9")
+        count = len(user.value("experiments"))
+        await user.click("ExperimentForm #add")
+        await user.screen("Choice")
+        await user.press("down", "enter")
+        await user.until(lambda: len(user.value("experiments")) == count + 1)
+        assert user.value("experiments", count).kind == "clustering"
+        await user.until(lambda: monte_carlo.query_one("ExperimentForm").region.height > 0)
+        await user.sees("clustering")
 
     drive(journey, SET, size=(160, 48))
