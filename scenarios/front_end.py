@@ -67,6 +67,13 @@ def dwell_offsets(drawn: PointDraw) -> NDArray[np.int64]:
     return np.concatenate([[0], first, ends]).astype(np.int64)
 
 
+def measured_points(resolved: ResolvedWorld, drawn: PointDraw) -> dict[str, list[float]]:
+    """Return what was measured of points: the azimuth of the dwell in degrees, and the range of the cell."""
+    azimuth = resolved.first_azimuth[drawn.sensor] + (drawn.beam + 0.5) * resolved.beam_width[drawn.sensor]
+    along = (drawn.range + 0.5) * resolved.range_cell[drawn.sensor]
+    return {"dwell": np.degrees(azimuth).tolist(), "range": along.tolist()}
+
+
 def every_point(resolved: ResolvedWorld, drawn: PointDraw) -> Draw:
     """Return the plots of a draw where every point is one.
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -179,14 +179,15 @@ def _selected(scan: NDArray[np.int64], scans: tuple[int, int], source: str) -> s
     return slice(int(begin), int(end))
 
 
-def write_plots(draw: Draw, scenario: Scenario) -> str:
+def write_plots(draw: Draw, scenario: Scenario, further: Mapping[str, Sequence[float]] | None = None) -> str:
     """Return the plots of one simulated trial, with their truth, as CSV that reads back bit for bit.
 
     Parameters
     ----------
     draw : one trial of the scenario
     scenario : whose targets the plots are of; a plot of clutter has no `target`, `true_x`, `true_y`;
-        in space there are `z` and `true_z`, too
+        in space there are `z` and `true_z`, too, and `amplitude` and `doppler` where plots have them
+    further : columns to be written before the truth, one value a plot
     """
     if draw.chunk.trials != 1:
         raise ValueError(f"a draw of {draw.chunk.trials} trials; a file of plots holds one")
@@ -194,16 +195,21 @@ def write_plots(draw: Draw, scenario: Scenario) -> str:
     writer = csv.writer(file, lineterminator="\n")
     plots = draw.chunk.trial(0)
     axes = "xyz"[: plots.position.shape[1]]
-    writer.writerow(["scan", "time", *axes, "target", *(f"true_{axis}" for axis in axes)])
+    measured = {"amplitude": plots.amplitude, "doppler": plots.doppler}
+    told = {name: column.tolist() for name, column in measured.items() if column is not None}
+    told = {**(further or {}), **told}
+    writer.writerow(["scan", "time", *axes, *told, "target", *(f"true_{axis}" for axis in axes)])
     columns = (plots.scan, plots.time, plots.position, draw.origin)
-    for scan, time, place, origin in zip(*(column.tolist() for column in columns), strict=True):
+    values = zip(*told.values(), strict=True) if told else [()] * len(plots)
+    rows = zip(*(column.tolist() for column in columns), values, strict=True)
+    for scan, time, place, origin, beside in rows:
         truth: list[int | float | str] = [""] * (1 + len(axes))
         if origin >= 0:
             target = scenario.targets[origin]
             elapsed = time - target.lifetime(scenario.interval)[0]
             moved = zip(target.position, draw.shift[0, origin].tolist(), target.velocity, strict=True)
             truth = [origin, *(start + shift + speed * elapsed for start, shift, speed in moved)]
-        writer.writerow([scan, time, *place, *truth])
+        writer.writerow([scan, time, *place, *beside, *truth])
     return file.getvalue()
 
 

@@ -83,16 +83,21 @@ def cluster(
         sys.stdout.write(json_text(told))
         return
     print_renderables(cluster_table(told, output_width()))
+    shown = recording.place(recording.fullest)
     if (plot or with_steps) and len(recording.scans) > 1:
-        tell(f"scan {recording.scans[0]} is shown, the first of {len(recording.scans):,}; see --scan")
+        which = f"the first of {len(recording.scans):,}"
+        if recording.dwells is not None:
+            which = f"dwell {shown['dwell']:g}, that of the most points among {len(recording.scans):,}"
+        tell(f"scan {shown['scan']} is shown, {which}; see --scan")
     if with_steps:
-        print_renderables(step_table(told, int(recording.scans[0]), output_width()))
+        print_renderables(step_table(told, width=output_width(), **shown))
     if plot:
         print_plane(found)
 
 
 def print_plane(found: Any) -> None:
-    """Print a chart of the points of the first scan, and of its clusters."""
+    """Print a chart of the points of the first scan, or of the fullest dwell, and of its clusters."""
     from hough_tui.reports.charts import cluster_chart
 
-    print(cluster_chart(found.clusters, 0, found.radius, min(output_width(), 120), 36, is_coloured()))
+    shown = found.recording.fullest
+    print(cluster_chart(found.clusters, shown, found.radius, min(output_width(), 120), 36, is_coloured()))

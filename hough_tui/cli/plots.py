@@ -117,25 +117,34 @@ def simulate(
     trial: Annotated[int, typer.Option(min=0, max=2**32 - 1, help="Which trial, from 0.")] = 0,
     seed: SeedOption = None,
     assignments: SetOption = None,
+    clustering: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Of sensors of high resolution: cluster the points so, or ideal; by default the points are "
+            "written.",
+        ),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="FILE", help="Write here, not to standard output."),
     ] = None,
 ) -> None:
     """Write the plots of one trial as CSV, with the target that each came from and its true position."""
-    from hough_tui.experiments.choice import changed, chosen_scenario, seed_of
+    from hough_tui.experiments.choice import changed, chosen_clustering, chosen_scenario, seed_of
+    from hough_tui.experiments.simulation import cell_words, simulated
     from scenarios.atomic import replace_file
     from scenarios.files import load_set
-    from scenarios.recordings import write_plots
-    from scenarios.simulate import draw
-    from scenarios.world import World
 
     given = load_set(name)
     chosen = chosen_scenario(given, scenario)
     seed = seed_of(given, chosen) if seed is None else seed
     chosen = changed(chosen, assignments or ())
+    stage = chosen_clustering(given, chosen, clustering)
     announce_compilation()
-    text = write_plots(draw(World.of(chosen), seed, trial), chosen)
+    text = simulated(chosen, seed, trial, stage)
+    if chosen.is_resolved and stage is None:
+        tell(cell_words(chosen))
     if output is None:
         sys.stdout.write(text)
     else:

@@ -7,6 +7,7 @@ from typing import Any
 
 from algorithms.errors import RequestError
 from algorithms.parameters import FieldError, Path, replaced, unknown
+from scenarios.entries import WITHOUT_CLUSTERING, ClusteringEntry, WithoutClustering
 from scenarios.marked_yaml import read
 from scenarios.model import InitiatorEntry, Scenario, ScenarioSet
 from scenarios.sweeps import place
@@ -30,6 +31,27 @@ def chosen_scenario(given: ScenarioSet, name: str | None) -> Scenario:
     if name not in names:
         raise RequestError(unknown(name, names, "scenario"))
     return given.scenario(name)
+
+
+def chosen_clustering(
+    given: ScenarioSet, scenario: Scenario, name: str | None
+) -> ClusteringEntry | WithoutClustering | None:
+    """Return how the points of a scenario become plots; None where they are left as they are.
+
+    Raises
+    ------
+    RequestError
+        Where there is no such clustering, it cannot stand before initiators, or there are no points.
+    """
+    if name is None or name == "none":
+        return None
+    if not scenario.is_resolved:
+        raise RequestError(f"--clustering {name}: {scenario.name} has no sensor of high resolution")
+    able = {entry.name: entry for entry in given.clusterings if entry.mode != "k-means"}
+    known: dict[str, ClusteringEntry | WithoutClustering] = {**WITHOUT_CLUSTERING, **able}
+    if name not in known:
+        raise RequestError(f"--clustering: {unknown(name, list(known), 'clustering')}")
+    return known[name]
 
 
 def changed(scenario: Scenario, assignments: Sequence[str]) -> Scenario:

@@ -129,11 +129,11 @@ def document(found: Clustered, with_steps: bool = False) -> dict[str, Any]:
         "mode": found.parameters.mode,
         "parameters": found.parameters.model_dump(mode="json"),
         "points": len(clusters.points),
-        "scans": clusters.points.scans,
+        "scans": len(np.unique(recording.scans)),
         "seconds": found.seconds,
         "clusters": [
             {
-                "scan": int(recording.scans[clusters.scan[index]]),
+                **recording.place(int(clusters.scan[index])),
                 "members": _rising(rows[members]),
                 "kept": _rising(rows[members[clusters.kept[members]]]),
                 "range": float(clusters.range[index]),
@@ -148,8 +148,8 @@ def document(found: Clustered, with_steps: bool = False) -> dict[str, Any]:
     }
     if with_steps:
         told["steps"] = [
-            _step(step, index, int(number), rows)
-            for scan, number in enumerate(recording.scans)
+            _step(step, index, recording.place(scan), rows)
+            for scan in range(recording.points.scans)
             for index, step in enumerate(found.steps(scan))
         ]
     return told
@@ -159,7 +159,7 @@ def plot_rows(told: dict[str, Any]) -> list[dict[str, Any]]:
     """Return the plots of a document as rows of a table."""
     return [
         {
-            "scan": found["scan"],
+            **{key: found[key] for key in ("scan", "dwell") if key in found},
             "range": found["range"],
             "doppler": found["doppler"],
             "amplitude": found["amplitude"],
@@ -175,9 +175,9 @@ def can_be_followed(parameters: Clustering) -> bool:
     return isinstance(parameters, SplittingClustering)
 
 
-def _step(step: Step, index: int, scan: int, rows: NDArray[np.int64]) -> dict[str, Any]:
+def _step(step: Step, index: int, place: dict[str, int | float], rows: NDArray[np.int64]) -> dict[str, Any]:
     return {
-        "scan": scan,
+        **place,
         "step": index,
         "parent": step.parent,
         "parts": list(step.parts),

@@ -8,7 +8,7 @@ from typing import Any
 from rich.table import Table
 
 from hough_tui.reports.layout import Column, Sheet, sheet_table
-from hough_tui.reports.numerals import aligned, durations, fixed, number, significant
+from hough_tui.reports.numerals import aligned, as_given, durations, fixed, number, significant
 
 Document = Mapping[str, Any]
 
@@ -26,16 +26,16 @@ def cluster_table(document: Document, width: int) -> Table:
     return sheet_table(cluster_sheet(document), width)
 
 
-def step_table(document: Document, scan: int, width: int) -> Table:
-    """Return the tree of the splits of one scan.
+def step_table(document: Document, scan: int, width: int, dwell: float | None = None) -> Table:
+    """Return the tree of the splits of one scan, or of one dwell of it.
 
     Parameters
     ----------
     document : as `hough-tui cluster --json --steps` prints it
-    scan : its number
+    scan, dwell : which one
     width : of the terminal, in cells
     """
-    return sheet_table(step_sheet(document, scan), width)
+    return sheet_table(step_sheet(document, scan, dwell), width)
 
 
 def cluster_sheet(document: Document) -> Sheet:
@@ -43,9 +43,13 @@ def cluster_sheet(document: Document) -> Sheet:
     found = list(document.get("clusters") or ())
     ellipses = [cluster.get("ellipse") or {} for cluster in found]
     widths = [ellipse.get("widths") or (None, None) for ellipse in ellipses]
+    dwells = []
+    if any("dwell" in cluster for cluster in found):
+        dwells.append(Column("dwell", aligned([as_given(cluster.get("dwell")) for cluster in found])))
     columns = (
         Column("#", tuple(str(index) for index in range(len(found)))),
         Column("scan", tuple(str(cluster.get("scan")) for cluster in found)),
+        *dwells,
         Column("range", _sizes([cluster.get("range") for cluster in found])),
         Column("Doppler", _sizes([cluster.get("doppler") for cluster in found])),
         Column("amplitude", aligned([significant(number(cluster.get("amplitude"))) for cluster in found])),
@@ -60,16 +64,20 @@ def cluster_sheet(document: Document) -> Sheet:
     return Sheet(f"{document.get('mode')} · {count}", columns, (_counts(document),))
 
 
-def step_sheet(document: Document, scan: int) -> Sheet:
+def step_sheet(document: Document, scan: int, dwell: float | None = None) -> Sheet:
     """Return the sets of points of one scan that were looked at, each below the one it is a part of."""
-    found = [step for step in document.get("steps") or () if step["scan"] == scan]
+    found = [
+        step
+        for step in document.get("steps") or ()
+        if step["scan"] == scan and (dwell is None or step["dwell"] == dwell)
+    ]
     columns = (
         Column("step", tuple(_branch(found, index) for index in range(len(found))), prose=True),
         Column("points", tuple(str(len(step["points"])) for step in found)),
         Column("verdict", tuple(_verdict(step) for step in found), prose=True),
         Column("why", tuple(str(step["why"]) for step in found), prose=True),
     )
-    return Sheet(f"splits of scan {scan}", columns)
+    return Sheet(f"splits of scan {scan}" + (f", dwell {dwell:g}" if dwell is not None else ""), columns)
 
 
 def _branch(steps: Sequence[Document], index: int) -> str:

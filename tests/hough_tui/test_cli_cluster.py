@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import math
 import sys
 
 import numpy as np
@@ -241,3 +242,65 @@ def test_a_wrong_file_is_refused_with_its_place(cli, tmp_path):
     status, out, err = cli("cluster", "none.csv", *EXTENTS)
     assert (status, out) == (2, "")
     assert err == "hough-tui: none.csv: there is no such file"
+
+
+def test_simulated_points_are_clustered_by_dwell_as_simulate_does_it(cli, tmp_path):
+    options = ("range-doppler", "--trial", 3, "--seed", 2)
+    status, _, said = cli("simulate", *options, "-o", "points.csv")
+    assert status == 0
+    assert "cells of 0.015 km and 0.001 km/s, from -0.2 to 0.2 km/s" in said
+    cells = ("--set", "range_cell=0.015", "--set", "doppler_cell=0.001")
+    extents = ("--range-extent", 0.24, "--doppler-extent", 0.012)
+    status, out, _ = cli("cluster", "points.csv", *extents, *cells, "--json")
+    assert status == 0
+    document = json.loads(out)
+    assert document["scans"] == 8
+    _, plots, _ = cli("simulate", *options, "--clustering", "recommended")
+    rows = list(csv.DictReader(io.StringIO(plots)))
+    told = sorted(document["clusters"], key=lambda cluster: (cluster["scan"], cluster["dwell"]))
+    assert [int(row["scan"]) for row in rows] == [cluster["scan"] for cluster in told]
+    assert [float(row["doppler"]) for row in rows] == pytest.approx([cluster["doppler"] for cluster in told])
+    for row, cluster in zip(rows, told, strict=True):
+        azimuth = math.radians(cluster["dwell"])
+        place = cluster["range"] * math.sin(azimuth), cluster["range"] * math.cos(azimuth)
+        assert (float(row["x"]), float(row["y"])) == pytest.approx(place, abs=2e-3)
+    # Both files are plots, too.
+    for name, text in (("points.csv", None), ("plots.csv", plots)):
+        if text is not None:
+            (tmp_path / name).write_text(text)
+        status, out, _ = cli("initiate", name, "--like", "range-doppler", "--json")
+        assert status == 0
+        assert json.loads(out)["scans"] == 8
+
+
+def test_the_dwell_of_the_most_points_is_shown(cli, tmp_path):
+    lines = ["scan,dwell,range,doppler,amplitude", "0,10,5,5,1"]
+    lines += [f"0,20,{r},{d},1" for r, d in SQUARE]
+    lines += [f"0,30,{r},{d},1" for r, d in SQUARE[:3]]
+    (tmp_path / "dwells.csv").write_text("\n".join(lines))
+    status, out, said = cli("cluster", "dwells.csv", *EXTENTS, "--steps", "--plot")
+    assert status == 0
+    assert "dwell 20, that of the most points among 3" in said
+    assert "splits of scan 0, dwell 20" in out
+    assert "dwell" in out.splitlines()[1] or "dwell" in out.splitlines()[2]
+    status, out, _ = cli("cluster", "dwells.csv", *EXTENTS, "--csv", "-")
+    assert out.splitlines()[0].startswith("scan,dwell,range")
+    assert len(out.splitlines()) == 2
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("range-doppler", "--clustering", "recomended"), ["did you mean 'recommended'", "ideal"]),
+        (("range-doppler", "--clustering", "k-means"), ["no clustering 'k-means'"]),
+        (
+            ("par-table-2", "--scenario", "T1", "--clustering", "ideal"),
+            ["T1", "no sensor of high resolution"],
+        ),
+    ],
+)
+def test_clusterings_that_simulate_cannot_use(cli, options, words):
+    status, out, said = cli("simulate", *options)
+    assert (status, out) == (2, "")
+    for word in words:
+        assert word in said
