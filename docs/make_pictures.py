@@ -23,7 +23,10 @@ from typing import Any
 
 SIZES = {"": (120, 36), "-80x24": (80, 24)}
 MOST_BYTES = 400_000
-SET = "course-report"
+WIDE = 100
+SET, SETS = "course-report", {"projections": "par-table-2"}
+"""The set of the pictures, and those of pictures of another one."""
+
 KEPT = ("20260105-090000-course-report-a1b2", "20260105-091500-course-report-c3d4")
 """What the kept runs are called: their own names hold the time."""
 
@@ -84,6 +87,15 @@ async def look(pilot: Any) -> None:
     await press(pilot, "f4")
 
 
+async def projections(pilot: Any) -> None:
+    """One trial in space, its first track chosen."""
+    await press(pilot, "f4", "s", "s", "s", "s", "s", "i")
+    if pilot.app.size.width < WIDE:
+        await press(pilot, "t", "z", "v")
+    else:
+        await press(pilot, "f8", "t")
+
+
 async def why(pilot: Any) -> None:
     """Why the strongest cell is a peak."""
     from hough_tui.ui.widgets.heatmap import Heatmap
@@ -125,6 +137,7 @@ VIEWS: dict[str, Callable[[Any], Awaitable[None]]] = {
     "initiator": initiator,
     "prediction": prediction,
     "look": look,
+    "projections": projections,
     "why-this-peak": why,
     "monte-carlo": monte_carlo,
     "results": results,
@@ -180,7 +193,7 @@ async def taken(name: str, size: tuple[int, int]) -> str:
     from hough_tui.ui.app import HoughApp
     from hough_tui.ui.config import Config
 
-    app = HoughApp(SET, Config())
+    app = HoughApp(SETS.get(name, SET), Config())
     async with app.run_test(size=size) as pilot:
         await settled(pilot)
         await VIEWS[name](pilot)
@@ -200,6 +213,7 @@ PLACES = {
     "Look": ("LookView", "LookPanel"),
     "Look: the plane (and the picture of Scenario)": ("Plane",),
     "Look: the accumulator": ("Heatmap",),
+    "Look: the votes of pairs of plots (in space)": ("PairVotes",),
     "Look: the table of tracks": ("TrackGrid",),
     "Look: why this peak": ("WhyPeak",),
     "Monte Carlo": ("MonteCarloView", "RunField", "ExperimentForm"),

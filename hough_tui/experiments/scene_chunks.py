@@ -92,7 +92,7 @@ class ClusteringCell(Cell):
         square = square[np.isfinite(square)]
         return {
             **self.heading(len(exact)),
-            "targets": len(self.scene.targets),
+            "targets_per_trial": len(self.scene.targets),
             "count_exact_rate": float(exact.mean()),
             "count_exact_ci95": list(mean_interval(exact)),
             "too_few_rate": float((columns.excess < 0).mean()),

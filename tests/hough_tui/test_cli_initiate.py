@@ -278,6 +278,19 @@ def test_several_sensors_lend_the_greatest_of_their_noise(cli, approach, tmp_pat
     assert json.loads(out)["assumed"]["sigma"].startswith("the greatest of the sensors on each axis")
 
 
+@pytest.mark.parametrize("name", ["combinatorial-3d", "hough-logic-3d", "hough-3d"])
+def test_a_vertical_track_has_no_line_in_the_plane(document, cli, tmp_path, name):
+    path = tmp_path / "climb.csv"
+    path.write_text("scan,x,y,z\n" + "".join(f"{scan},3000,4000,{3000 + 100 * scan}\n" for scan in range(4)))
+    given = (path, "-i", name, "--unit", "m", "--sigma", 10)
+    (track,) = document(*given)["tracks"]
+    assert (track["theta_deg"], track["rho"], track["fitted_theta_deg"], track["fitted_rho"]) == (None,) * 4
+    np.testing.assert_allclose(track["velocity"], (0, 0, 100), atol=1e-9)
+    status, out, _ = cli("initiate", *given, "--plot")
+    assert status == 0
+    assert "1 track" in out
+
+
 def test_an_initiator_in_space_needs_z(cli, simulated):
     status, out, err = cli("initiate", simulated, "-i", "combinatorial-3d", "--sigma", 0.1)
     assert (status, out) == (2, "")

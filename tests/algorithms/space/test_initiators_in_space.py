@@ -97,6 +97,24 @@ def test_five_targets_at_once_are_told_apart(approach):
     assert fused.found.mean(axis=0)[2:4].max() < 0.5
 
 
+@pytest.mark.parametrize("name", INITIATORS)
+def test_a_trial_gives_the_same_in_a_chunk_as_alone(approach, name):
+    # Of four to six tracks each: the columns of a chunk must grow.
+    scenario, trials = approach.scenario("together"), 12
+    _, tracks, drawn = measured(scenario, name, trials, speed_max=500.0)
+    parameters = validated(initiator(name).parameters, {"speed_max": 500.0}, name).resolved(scenario.context)
+    assert len(tracks.theta) > 3 * trials
+    for trial in range(trials):
+        begin, end = tracks.offsets[trial : trial + 2]
+        alone = initiator(name).initiate(drawn.chunk.trial(trial), scenario.context, parameters)
+        held = [row[row >= 0].tolist() for row in tracks.plots[begin:end]]
+        assert held == [rows.tolist() for rows in alone.plots]
+        # A track's line is that of its state, which is worked out by other code.
+        np.testing.assert_allclose(tracks.theta[begin:end], alone.fitted_theta, atol=1e-6)
+        np.testing.assert_allclose(tracks.rho[begin:end], alone.fitted_rho, rtol=1e-6, atol=0.1)
+        assert alone.effort == {what: int(count[trial]) for what, count in tracks.effort.items()}
+
+
 def test_four_of_four_in_dense_clutter(approach):
     scores, _, _ = measured(approach.scenario("dense"), "combinatorial-3d", 100, plots=4)
     assert (scores.found.mean(axis=0) >= 0.97 - 4.0 * np.sqrt(0.03 / 100)).all()

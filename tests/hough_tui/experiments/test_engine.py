@@ -90,16 +90,17 @@ def test_a_cancelled_run_tells_what_it_finished():
 def test_a_chunk_whose_trials_take_long_is_done_in_parts(monkeypatch):
     # Time passes by the trials alone here.
     now, parts = [0.0], []
-    run_chunk = engine.run_chunk
+    plan = plan_run([load_set("course-report")], experiments=["modified"], trials=25)
+    draws = type(plan.draws[0])
+    run = draws.run
 
-    def slow(plan, shared, world, first, trials, plain):
-        yield from run_chunk(plan, shared, world, first, trials, plain)
+    def slow(shared, world, first, trials, plain):
+        yield from run(shared, world, first, trials, plain)
         now[0] += 0.02 * trials
         parts.append((first, trials))
 
-    monkeypatch.setattr(engine, "run_chunk", slow)
+    monkeypatch.setattr(draws, "run", slow)
     monkeypatch.setattr(engine.time, "monotonic", lambda: now[0])
-    plan = plan_run([load_set("course-report")], experiments=["modified"], trials=25)
     job = Job(plan, workers=1)
     assert job.wait()
     assert job.is_complete

@@ -79,7 +79,7 @@ def test_the_tables_of_the_course_report(name):
     assert document["trials"] == TRIALS
     rows = {(row["case"], row["metric"]): row for row in document["rows"]}
     for scans, (success, false) in REFERENCE[name].items():
-        case = f"{table.entries[0].initiator}, {scans} scans"
+        case = f"{table.entries[0].method}, {scans} scans"
         for metric, expected in (("success_rate", success), ("false_track_ratio", false)):
             row = rows[case, metric]
             half = (row["ci95"][1] - row["ci95"][0]) / 2
@@ -89,7 +89,7 @@ def test_the_tables_of_the_course_report(name):
             assert row["published"] is not None
         assert rows[f"{case}, θ within 6°", "success_rate"]["published"] is None
         assert rows[f"{case}, θ within 6°", "success_rate"]["consistent"] is None
-    control = rows[f"{table.entries[0].initiator}, 5 scans", "success_control"]
+    control = rows[f"{table.entries[0].method}, 5 scans", "success_control"]
     assert control["measured"] > (0.99 if name == "course-2-1" else 0.05)
 
 

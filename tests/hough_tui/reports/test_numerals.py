@@ -81,4 +81,4 @@ def test_enumerated():
 
 def test_unknown_metrics_go_by_their_name():
     assert metric("found_rate").label == "found rate %"
-    assert metric("centroid_rmse").label == "centroid rmse"
+    assert metric("gate_rmse").label == "gate rmse"

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from textual.widgets import Static
 
 from hough_tui.ui.widgets.caption import Caption
 from hough_tui.ui.widgets.heatmap import Heatmap
@@ -180,7 +181,8 @@ def test_initiators_and_scenarios_of_other_dimensions_say_what_is_amiss(drive, h
         user.view.take_focus()
         await user.press("j")
         await user.press("f10")
-        await user.sees("flat lies in the plane")
+        caption = user.view.query_one(".caption", Static)
+        await user.until(lambda: "flat lies in the plane: it cannot run there" in str(caption.content))
 
         # A run says what `batch` says.
         await user.go("f6")
