@@ -221,9 +221,10 @@ def verdict(steps: Sequence[Document], index: int | None) -> tuple[Part, ...]:
     if index is None:
         return Part(f"{len(steps)} step{'s' * (len(steps) != 1)} led here"), Part(". goes through them", 1)
     step = steps[index]
-    words, count = verdict_words(step), len(step["points"])
+    count = len(step["points"])
     return (
         Part(f"step {index}"),
-        Part(f"{count:,} point{'s' * (count != 1)}: {words}", short=words),
+        Part(f"{count:,} point{'s' * (count != 1)}", 2),
+        Part(verdict_words(step)),
         Part(step["why"], 1),
     )

@@ -42,7 +42,7 @@ ELLIPSE = 5
 OUTER = ELLIPSE + COLOURS
 INNER = OUTER + COLOURS
 MEASURE = INNER + COLOURS
-TRUTH, CENTRE, CURSOR = MEASURE + 1, MEASURE + 2, MEASURE + 3
+TRUTH, LABEL, CENTRE, CURSOR = MEASURE + 1, MEASURE + 2, MEASURE + 3, MEASURE + 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -135,6 +135,7 @@ def styles(colours: Palette) -> list[Style | None]:
         *(ink(colour, bold=True) for colour in inks),
         ink(colours.lit),
         ink(colours.truth, bold=True),
+        ink(colours.lit, bold=True),
         ink(colours.lit, bold=True),
         ink(colours.lit, bold=True, reverse=True),
     ]
@@ -229,7 +230,7 @@ def _label(canvas: Canvas, scene: ClusterScene, chosen: int | None) -> None:
         if not viewport.limits.holds(x, y):
             continue
         row, column, words = int(viewport.row(y)), int(viewport.column(x)) + 1, str(index)
-        layer = CURSOR if index == chosen else CENTRE
+        layer = CURSOR if index == chosen else LABEL
         canvas.write(row, column, words, layer)
 
 

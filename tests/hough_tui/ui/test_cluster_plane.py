@@ -325,3 +325,15 @@ def test_home_holds_points_beside_the_region_but_not_those_a_world_away():
     assert home.holds(-20.0, 50.0)
     assert not home.holds(1e9, 0.0)
     assert math.isclose(Viewport(home, 10, 10).x(10), home.right)
+
+
+def test_numbers_of_clusters_never_hide_a_plot():
+    async def journey(app, plane, pilot):
+        column, row = place(plane, 50.0, 50.0)
+        view = plane.viewport
+        beside = view.x(column - plane.layout_of_parts[0].gutter + 1.5)
+        plane.show(sparse([], [], plots=[(50.0, 50.0), (beside, 50.0)]))
+        await pilot.pause()
+        assert plane.render_line(row).text[column : column + 3] == f"{PLOT}{PLOT}1"
+
+    play(sparse([], []), journey)
