@@ -51,7 +51,10 @@ def _error_interval(rows: Sequence[Row]) -> list[Column]:
 
 def _notes(rows: Sequence[Row]) -> tuple[str, ...]:
     scenes = list(dict.fromkeys(str(row.get("scene") or "") for row in rows))
-    words = "Exact: as many clusters as targets. RMSE: of the distance from its centre to the nearest plot."
+    words = (
+        "Exact: as many clusters as targets. RMSE: of the distance from a target's centre to the nearest "
+        "plot, in cells."
+    )
     if len(scenes) == 1 and scenes[0]:
         words = f"Scene {scenes[0]}. {words}"
     return words, trial_words(rows)
