@@ -74,7 +74,7 @@ def step_sheet(document: Document, scan: int, dwell: float | None = None) -> She
     columns = (
         Column("step", tuple(_branch(found, index) for index in range(len(found))), prose=True),
         Column("points", tuple(str(len(step["points"])) for step in found)),
-        Column("verdict", tuple(_verdict(step) for step in found), prose=True),
+        Column("verdict", tuple(verdict_words(step) for step in found), prose=True),
         Column("why", tuple(str(step["why"]) for step in found), prose=True),
     )
     return Sheet(f"splits of scan {scan}" + (f", dwell {dwell:g}" if dwell is not None else ""), columns)
@@ -91,7 +91,8 @@ def _branch(steps: Sequence[Document], index: int) -> str:
     return text
 
 
-def _verdict(step: Document) -> str:
+def verdict_words(step: Document) -> str:
+    """Return what becomes of a set of points."""
     if step["verdict"] == "split":
         return f"split in {AXES[step['axis']]} at {step['cut']:.6g}, gap {significant(step['gap'])}"
     return f"cluster {step['cluster']}" if step["cluster"] is not None else "too few points"

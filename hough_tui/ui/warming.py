@@ -16,7 +16,8 @@ from scenarios.world import World
 
 
 def warm() -> None:
-    """Load, or compile, the kernels of drawing, of every compiled initiator, and of scoring."""
+    """Load, or compile, the kernels of draws, of every compiled initiator, of scoring, and of clustering."""
+    _warm_clustering()
     for scenario in (_scene(dimensions=2), _scene(dimensions=3)):
         _warm_initiators(scenario)
     _warm_prediction(_scene(dimensions=2))
@@ -33,6 +34,21 @@ def _scene(dimensions: int) -> Scenario:
         clutter=[PoissonClutter(rate=2.0)],
         targets=[Target(position=(1.0,) * dimensions, velocity=(0.1,) * dimensions)],
     )
+
+
+def _warm_clustering() -> None:
+    """Draw the smallest scene, and split its points."""
+    from algorithms.clustering.parameters import Recommended
+    from hough_tui.experiments.scene_look import cluster_look, scene_picture
+    from scenarios.scenes import ExtendedTarget, Scene, SceneRegion
+
+    scene = Scene(
+        name="warm",
+        region=SceneRegion(range=(0.0, 10.0), doppler=(0.0, 10.0)),
+        targets=[ExtendedTarget(range=5.0, doppler=5.0)],
+    )
+    parameters = Recommended(range_extent=16.0, doppler_extent=12.0)
+    cluster_look(scene_picture(scene, 1, 0), "warm", parameters)
 
 
 def _warm_initiators(scenario: Scenario) -> None:

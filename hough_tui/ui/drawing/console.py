@@ -10,7 +10,10 @@ from textual.strip import Strip
 UPPER_DOTS, LOWER_DOTS = 0b00011011, 0b11100100
 """Bits of a braille character's dots in its upper and in its lower half."""
 
-SIGNS = {"×": "x", "◇": "♦", "◆": "♦", "●": "•", "□": "■", "▪": "■", "╌": "-", "▸": "►", "▴": "▲"}
+SIGNS = {
+    "×": "x", "◇": "♦", "◆": "♦", "●": "•", "□": "■", "▪": "■", "△": "▲", "▽": "▼", "◉": "◘", "╌": "-",
+    "▸": "►", "▴": "▲",
+}  # fmt: skip
 """What stands for signs that are not among the 256 characters of code page 437."""
 
 

@@ -12,7 +12,7 @@ from rich.text import Text
 from algorithms.context import Unit
 from hough_tui.ui.forms.edits import value_in
 from hough_tui.ui.forms.fields import FieldDescription, Kind, components, described, ordered, told_apart
-from hough_tui.ui.forms.labels import within
+from hough_tui.ui.forms.labels import label_of, within
 from hough_tui.ui.forms.texts import text_of
 
 INHERITED = "dim italic"
@@ -40,7 +40,18 @@ def columns_of(
                 place = paths.index(column.path)
             else:
                 found.insert(place, column)
-    return tuple(found)
+    return tuple(_told_apart(found))
+
+
+def _told_apart(columns: Sequence[FieldDescription]) -> Iterator[FieldDescription]:
+    """Yield columns, those of vectors with the vector's name where theirs alone would not tell which."""
+    labels = [column.label.casefold() for column in columns]
+    for column in columns:
+        is_component = isinstance(column.path[-1], int)
+        if is_component and labels.count(column.label.casefold()) > 1:
+            yield replace(column, label=f"{label_of(str(column.path[-2]))} {column.label}")
+        else:
+            yield column
 
 
 def has(element: BaseModel, column: FieldDescription) -> bool:

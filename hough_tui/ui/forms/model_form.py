@@ -20,6 +20,7 @@ from algorithms.context import Unit
 from algorithms.parameters import Path, Problem, join
 from hough_tui.ui.forms.asked import Asked, Negotiation
 from hough_tui.ui.forms.edits import value_in
+from hough_tui.ui.forms.extended_target_table import ExtendedTargetTable
 from hough_tui.ui.forms.fields import FieldDescription, Kind, described, ordered, walk
 from hough_tui.ui.forms.list_table import ListTable
 from hough_tui.ui.forms.numbers import Unreadable
@@ -27,6 +28,7 @@ from hough_tui.ui.forms.sensor_table import SensorTable
 from hough_tui.ui.forms.target_table import TargetTable
 from hough_tui.ui.forms.value_field import ValueField
 from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited, FieldUnreadable
+from scenarios.scenes import ExtendedTarget
 from scenarios.sensors import CartesianSensor
 from scenarios.targets import Target
 
@@ -67,6 +69,7 @@ class ModelForm(VerticalScroll, can_focus=False, inherit_bindings=False):
 
     TABLES: ClassVar[dict[type[BaseModel], type[ListTable]]] = {
         Target: TargetTable,
+        ExtendedTarget: ExtendedTargetTable,
         CartesianSensor: SensorTable,
     }
     """The tables that say more of their elements than the declaration does."""

@@ -25,9 +25,19 @@ TABS = {
     "scenario": "Scenario",
     "initiator": "Initiator",
     "look": "Look",
+    "clustering": "Clustering",
     "monte-carlo": "Monte Carlo",
     "results": "Results",
 }
+
+VIEWS_OF = {
+    "scenarios": "scenario",
+    "initiators": "initiator",
+    "scenes": "clustering",
+    "clusterings": "clustering",
+    "experiments": "monte-carlo",
+}
+"""The view that shows an element of each list of the set."""
 
 WIDE = 120
 """Columns from which the tree stands beside the views."""
@@ -50,6 +60,7 @@ class MainScreen(AttentiveScreen):
         Binding("f2", "tab('scenario')", "Scenario", id="tab.scenario", show=False),
         Binding("f3", "tab('initiator')", "Initiator", id="tab.initiator", show=False),
         Binding("f4", "tab('look')", "Look", id="tab.look", show=False),
+        Binding("f11,ctrl+g", "tab('clustering')", "Clustering", id="tab.clustering", show=False),
         Binding("f6", "tab('monte-carlo')", "Monte Carlo", id="tab.monte-carlo", show=False),
         Binding("f7", "tab('results')", "Results", id="tab.results", show=False),
         Binding("f8", "tree", "Tree of the set", id="main.tree", show=False),
@@ -100,6 +111,8 @@ class MainScreen(AttentiveScreen):
             await place.remove_children()
             await place.mount(SetTree())
             self.show_set(self._workspace)
+        if not self._workspace.given.scenarios:
+            self.query_one(TabbedContent).active = "clustering"
         await self._show_tab(self.query_one(TabbedContent).active)
         self.call_after_refresh(self.post_message, SetShown())
 
@@ -161,13 +174,13 @@ class MainScreen(AttentiveScreen):
         if event.pane.id in TABS:
             self.run_worker(self._show_tab(event.pane.id or ""))
 
-    async def _show_tab(self, name: str, index: int | None = None) -> None:
+    async def _show_tab(self, name: str, chosen: tuple[str, int] | None = None) -> None:
         """Show a view, mounted now if this is the first time, and the part of the set that it is to show."""
         # One after the other, and each to its end: a view that is half mounted would stay blank.
         async with self._showing:
-            await self._show(name, index)
+            await self._show(name, chosen)
 
-    async def _show(self, name: str, index: int | None) -> None:
+    async def _show(self, name: str, chosen: tuple[str, int] | None) -> None:
         if self._workspace is None or not name:
             return
         if name not in self._views:
@@ -179,8 +192,13 @@ class MainScreen(AttentiveScreen):
         elif name in self._stale:
             self._stale.discard(name)
             self._views[name].show_set(self._workspace.given)
-        if index is not None and hasattr(self._views[name], "choose"):
-            self._views[name].choose(index)
+        if chosen is not None:
+            part, index = chosen
+            view = self._views[name]
+            if hasattr(view, "choose_part"):
+                view.choose_part(part, index)
+            else:
+                view.choose(index)
 
     def action_tab(self, name: str) -> None:
         """Show a view."""
@@ -211,15 +229,17 @@ class MainScreen(AttentiveScreen):
         self.run_worker(self._open_trial(opened))
 
     async def _open_trial(self, opened: TrialOpened) -> None:
-        await self._go("look")
-        if "look" in self._views:
-            self._views["look"].open_trial(opened)
+        # What is drawn of a scene are points to be clustered; of a scenario, plots for initiators.
+        name = "clustering" if "scene" in opened.cell.elements else "look"
+        await self._go(name)
+        if name in self._views:
+            self._views[name].open_trial(opened)
 
     async def _choose(self, part: str, index: int) -> None:
-        """Show a scenario, an initiator or an experiment of the set."""
-        name = {"scenarios": "scenario", "initiators": "initiator", "experiments": "monte-carlo"}[part]
+        """Show an element of a list of the set."""
+        name = VIEWS_OF[part]
         await self._go(name)
-        await self._show_tab(name, index)
+        await self._show_tab(name, (part, index))
 
     def on_monte_carlo_view_progress(self, event: Any) -> None:
         """Say on the status line how far the run is."""
@@ -253,6 +273,8 @@ def _view(name: str) -> Any:
         from hough_tui.ui.views.initiator import InitiatorView as View
     elif name == "look":
         from hough_tui.ui.views.look import LookView as View
+    elif name == "clustering":
+        from hough_tui.ui.views.clustering import ClusteringView as View
     elif name == "monte-carlo":
         from hough_tui.ui.views.monte_carlo import MonteCarloView as View
     else:

@@ -54,7 +54,7 @@ class ChartPane(Vertical):
         if metrics and self.metric not in (*metrics, BY_TRIAL):
             self.metric = metrics[0]
         options = [(KNOWN[key].label, key) for key in metrics]
-        if options:
+        if any("initiator" in row for row in self._rows) and options:
             options.append(("false % by trial, of the row chosen", BY_TRIAL))
         if options != self._offered:
             self._offered = options
@@ -78,7 +78,9 @@ class ChartPane(Vertical):
 
     def turn_by_trial(self) -> None:
         """Show the ratio of false tracks by trial, or the metric again."""
-        if self.metric == BY_TRIAL:
+        if BY_TRIAL not in (value for _, value in self._offered):
+            self.notify("Trials of clustering have no tracks, and so none that are false", markup=False)
+        elif self.metric == BY_TRIAL:
             self._choose(self._metric_before)
         else:
             self._metric_before = self.metric

@@ -16,12 +16,19 @@ from hough_tui.ui.drawing.shortening import Part
 from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.messages import ElementAdded, ElementRemoved
 from hough_tui.ui.naming import free_name
+from hough_tui.ui.screens.choice import Choice
 from hough_tui.ui.widgets.caption import Caption
 from scenarios.experiments import Experiment
 from scenarios.model import ScenarioSet
 
 LEAST_PLOTS = 3
 """Plots of a target that a track must hold by the criterion of a new experiment."""
+
+KINDS = {
+    "initiation": "initiation: initiators on scenarios, how often they find targets",
+    "clustering": "clustering: clusterings on scenes, how often they count the targets right",
+}
+"""The kinds of experiment."""
 
 
 class ExperimentForm(Vertical):
@@ -93,8 +100,16 @@ class ExperimentForm(Vertical):
         elif event.button.id == "copy":
             before = self._given.experiments[self._index]
             self._add(before.model_dump(mode="json", exclude_unset=True))
+        elif self._given.scenes and self._given.scenarios:
+            self.app.push_screen(Choice("Add an experiment", KINDS), self._add_kind)
         else:
+            self._add_kind("clustering" if self._given.scenes else "initiation")
+
+    def _add_kind(self, kind: str | None) -> None:
+        if kind == "initiation":
             self._add({"name": "experiment", "criterion": {"plots": LEAST_PLOTS}})
+        elif kind is not None:
+            self._add({"name": "experiment", "kind": kind})
 
     def _add(self, data: dict[str, Any]) -> None:
         assert self._given is not None

@@ -18,7 +18,9 @@ from textual.widgets import DataTable, Static
 
 from algorithms.errors import RequestError
 from hough_tui.directories import data_directory
-from hough_tui.experiments.work import Row
+from hough_tui.experiments.chunks import InitiationCell
+from hough_tui.experiments.scene_chunks import ClusteringCell
+from hough_tui.experiments.work import Cell, Row
 from hough_tui.reports.documents import markdown_text
 from hough_tui.reports.rates import rate_sheets
 from hough_tui.ui.messages import TrialOpened
@@ -27,15 +29,20 @@ from hough_tui.ui.screens.question import telling
 from hough_tui.ui.screens.trials import TrialsScreen
 from hough_tui.ui.views.shown_run import ShownRun
 from hough_tui.ui.widgets.chart_pane import ChartPane
+from hough_tui.ui.widgets.cluster_trials import ClusterTrials
 from hough_tui.ui.widgets.rate_grid import RateGrid
 from hough_tui.ui.widgets.rate_plot import RatePlot
-from hough_tui.ui.widgets.trial_list import first_order
+from hough_tui.ui.widgets.track_trials import TrackTrials
 from hough_tui.ui.widgets.trial_table import Rows, TrialTable
 from scenarios.atomic import replace_file
 
 TALL, WIDE, BROAD = 27, 120, 90
 """Lines from which table and chart stand above each other; columns of the terminal, and of the panel,
 from which they stand side by side."""
+
+
+TABLES: dict[type[Cell], type[TrialTable]] = {InitiationCell: TrackTrials, ClusteringCell: ClusterTrials}
+"""The tables of the trials of each kind of row."""
 
 
 class RatePanel(Widget):
@@ -206,8 +213,9 @@ class RatePanel(Widget):
     @work(thread=True, exclusive=True, exit_on_error=False, group="trials")
     def _read_trials(self, run: ShownRun, index: int) -> None:
         try:
-            table = TrialTable(run.trials(index))
-            self.post_message(self.TrialsRead(table, first_order(table)))
+            trials = run.trials(index)
+            table = TABLES[type(trials.cell)](trials)
+            self.post_message(self.TrialsRead(table, table.first_order))
         except RequestError as error:
             self.post_message(self.Told(str(error), is_problem=True))
 

@@ -1,4 +1,4 @@
-"""The tree of the set: its scenarios, initiators and experiments."""
+"""The tree of the set: its scenarios, initiators and experiments, scenes and clusterings."""
 
 from __future__ import annotations
 
@@ -41,11 +41,8 @@ class SetTree(Tree[Place]):
 
     def show(self, given: ScenarioSet) -> None:
         """Show a set; nothing happens where its names are as they were."""
-        names = {
-            "scenarios": [found.name for found in given.scenarios],
-            "initiators": [found.name for found in given.initiators],
-            "experiments": [found.name for found in given.experiments],
-        }
+        parts = ("scenarios", "initiators", "scenes", "clusterings", "experiments")
+        names = {part: [found.name for found in getattr(given, part)] for part in parts}
         if names == self._names:
             return
         self._names = names
@@ -53,6 +50,8 @@ class SetTree(Tree[Place]):
         self.root.set_label(Text(given.name, style="bold"))
         self.root.expand()
         for part, listed in names.items():
+            if not listed:
+                continue
             branch = self.root.add(Text(part, style="dim"), expand=True)
             for index, name in enumerate(listed):
                 branch.add_leaf(Text(name), data=(part, index))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-import numpy as np
 from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
@@ -16,7 +15,7 @@ from textual.reactive import reactive
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from hough_tui.ui.widgets.trial_table import ORDERS, QUIET, WRONG, Rows, TrialTable
+from hough_tui.ui.widgets.trial_table import QUIET, WRONG, Rows, TrialTable
 
 HEADER = 2
 """Lines of the headings."""
@@ -74,7 +73,7 @@ class TrialList(ScrollView, can_focus=True):
         super().__init__()
         self._table = table
         self._order = order
-        self.sorted_by = next(iter(ORDERS))
+        self.sorted_by = next(iter(table.ORDERS))
         widths = [column.width + GAP for column in table.columns]
         self.virtual_size = Size(sum(widths), len(table) + HEADER)
 
@@ -119,7 +118,7 @@ class TrialList(ScrollView, can_focus=True):
         """Sort by the next of the orders."""
         names = [
             name
-            for name in ORDERS
+            for name in self._table.ORDERS
             if name == "failed first" or any(column.order == name for column in self._table.columns)
         ]
         self._sort(names[(names.index(self.sorted_by) + 1) % len(names)])
@@ -198,8 +197,3 @@ class TrialList(ScrollView, can_focus=True):
 
 def _right(text: str, width: int) -> str:
     return " " * max(0, width - cell_len(text)) + text
-
-
-def first_order(table: TrialTable) -> Rows:
-    """Return the rows in the order in which they are shown first."""
-    return table.order(next(iter(ORDERS))) if len(table) else np.zeros(0, np.int64)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hough_tui.reports.numerals import fixed, number
 from hough_tui.ui.views.shown_run import RowTrials
 
 Rows = NDArray[np.int64]
@@ -36,124 +36,52 @@ class TrialColumn:
     order: str | None = None
 
 
-def _failed_first(trials: RowTrials) -> Rows:
-    columns = trials.of_tracks
-    found = columns.found.sum(axis=1)
-    # The last key counts most.
-    return np.lexsort((trials.numbers, -columns.duplicates, -columns.false, found))
-
-
-def _by_number(trials: RowTrials) -> Rows:
-    return np.argsort(trials.numbers, kind="stable")
-
-
-def _by_false(trials: RowTrials) -> Rows:
-    return np.argsort(-trials.of_tracks.false, kind="stable")
-
-
-def _by_duplicates(trials: RowTrials) -> Rows:
-    return np.argsort(-trials.of_tracks.duplicates, kind="stable")
-
-
-def _by_rho_error(trials: RowTrials) -> Rows:
-    return _by_greatest(trials.of_tracks.rho_error)
-
-
-def _by_theta_error(trials: RowTrials) -> Rows:
-    return _by_greatest(trials.of_tracks.theta_error)
-
-
-def _by_greatest(errors: NDArray[np.float32]) -> Rows:
-    if errors.shape[1] == 0:
-        return np.arange(len(errors))
-    known = np.where(np.isnan(errors), -1.0, np.abs(errors))
-    return np.argsort(-known.max(axis=1), kind="stable")
-
-
-ORDERS: dict[str, Callable[[RowTrials], Rows]] = {
-    "failed first": _failed_first,
-    "trial": _by_number,
-    "false tracks": _by_false,
-    "duplicates": _by_duplicates,
-    "error in ρ": _by_rho_error,
-    "error in θ": _by_theta_error,
-}
-
-
-class TrialTable:
-    """The trials behind a row.
+class TrialTable(ABC):
+    """The trials behind a row; the subclasses say what each of them gave.
 
     Parameters
     ----------
     trials : what to show
+
+    Attributes
+    ----------
+    ORDERS : what they can be sorted by, the order in which they are shown first before the others
+    columns : what is told of them
     """
+
+    ORDERS: ClassVar[Mapping[str, Callable[[RowTrials], Rows]]] = {}
 
     def __init__(self, trials: RowTrials) -> None:
         self.trials = trials
-        columns = trials.of_tracks
-        self.targets = columns.found.shape[1]
-        self._found = columns.found.sum(axis=1)
-        self.missed = int((self._found < self.targets).sum())
-        self.with_false = int((columns.false > 0).sum())
-        self.columns = tuple(self._columns())
+        self.columns = (self._number_column(), *self.told())
 
     def __len__(self) -> int:
         return len(self.trials.numbers)
 
     def order(self, by: str) -> Rows:
         """Return the rows in one of the `ORDERS`."""
-        return ORDERS[by](self.trials)
+        return self.ORDERS[by](self.trials)
 
     @property
+    def first_order(self) -> Rows:
+        """The rows in the order in which they are shown first."""
+        return self.order(next(iter(self.ORDERS))) if len(self) else np.zeros(0, np.int64)
+
+    @property
+    @abstractmethod
     def words(self) -> str:
         """How many trials there are, and how many failed."""
-        unit = self.trials.cell.scenario.unit.value
-        missing = "" if not self.targets else f" · {self.missed:,} miss a target"
-        return f"{len(self):,} trials{missing} · {self.with_false:,} have false tracks · lengths in {unit}"
 
-    def _columns(self) -> list[TrialColumn]:
-        columns, numbers = self.trials.of_tracks, self.trials.numbers
+    @abstractmethod
+    def told(self) -> list[TrialColumn]:
+        """Return the columns beside that of the trials' numbers."""
+
+    def _number_column(self) -> TrialColumn:
+        numbers = self.trials.numbers
         widest = len(f"{numbers.max(initial=0):,}")
-        found = [
-            TrialColumn("trial", max(6, widest), lambda row: (f"{numbers[row]:,}", PLAIN), "trial"),
-        ]
-        if self.targets:
-            found.append(TrialColumn("found", 5, self._found_cell, "failed first"))
-        found += [
-            TrialColumn("tracks", 6, lambda row: (f"{columns.tracks[row]:,}", PLAIN)),
-            TrialColumn("false", 5, self._count(columns.false), "false tracks"),
-            TrialColumn("dupl.", 5, self._count(columns.duplicates), "duplicates"),
-        ]
-        for index, target in enumerate(self.trials.cell.scenario.targets):
-            name = (target.name or f"target {index + 1}")[:12]
-            width = max(7, len(name))
-            found.append(TrialColumn(f"{name}\nΔθ °", width, self._theta(index), "error in θ"))
-            found.append(TrialColumn(f"{name}\nΔρ", width, self._rho(index), "error in ρ"))
-        if len(columns.control_found) and self.targets:
-            control = columns.control_found.sum(axis=1)
-            found.append(TrialColumn("control", 7, lambda row: (f"{control[row]}/{self.targets}", QUIET)))
-        if columns.votes_outside.any():
-            outside = columns.votes_outside
-            found.append(TrialColumn("votes\noutside", 7, lambda row: (f"{outside[row]:,}", QUIET)))
-        return found
+        return TrialColumn("trial", max(6, widest), lambda row: (f"{numbers[row]:,}", PLAIN), "trial")
 
-    def _found_cell(self, row: int) -> tuple[str, str]:
-        count = int(self._found[row])
-        return f"{count}/{self.targets}", PLAIN if count == self.targets else WRONG
 
-    def _theta(self, target: int) -> Callable[[int], tuple[str, str]]:
-        errors = self.trials.of_tracks.theta_error
-        return lambda row: self._error(row, target, math.degrees(float(errors[row, target])), 2)
-
-    def _rho(self, target: int) -> Callable[[int], tuple[str, str]]:
-        errors = self.trials.of_tracks.rho_error
-        return lambda row: self._error(row, target, float(errors[row, target]), 3)
-
-    def _error(self, row: int, target: int, value: float, decimals: int) -> tuple[str, str]:
-        if not self.trials.of_tracks.found[row, target]:
-            return "missed", WRONG
-        return fixed(number(value), decimals), PLAIN
-
-    @staticmethod
-    def _count(values: NDArray[np.int32]) -> Callable[[int], tuple[str, str]]:
-        return lambda row: (f"{values[row]:,}", PLAIN if values[row] else QUIET)
+def by_number(trials: RowTrials) -> Rows:
+    """Return the rows in the order of their trials."""
+    return np.argsort(trials.numbers, kind="stable")

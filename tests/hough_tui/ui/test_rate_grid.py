@@ -11,8 +11,8 @@ from hough_tui.experiments.columns import TrialColumns
 from hough_tui.experiments.plan import plan_run
 from hough_tui.ui.views.shown_run import RowTrials
 from hough_tui.ui.widgets.rate_grid import RateGrid, rate_columns, sort_value
-from hough_tui.ui.widgets.trial_list import TrialList, first_order
-from hough_tui.ui.widgets.trial_table import ORDERS, TrialTable
+from hough_tui.ui.widgets.track_trials import TrackTrials
+from hough_tui.ui.widgets.trial_list import TrialList
 from scenarios.files import load_set
 
 
@@ -186,13 +186,13 @@ def many(cell, count):
         random.random((count, 2)) < 0.1,
         np.full(count, -1, np.int32),
     )
-    return TrialTable(RowTrials(cell, columns))
+    return TrackTrials(RowTrials(cell, columns))
 
 
 def test_failed_trials_stand_first(cell):
     table = many(cell, 2000)
     columns = table.trials.columns
-    order = first_order(table)
+    order = table.first_order
     keys = [
         (columns.found[row].sum(), -columns.false[row], -columns.duplicates[row], row)
         for row in order.tolist()
@@ -201,7 +201,7 @@ def test_failed_trials_stand_first(cell):
     assert f"{int((columns.found.sum(axis=1) < 2).sum()):,} miss a target" in table.words
 
 
-@pytest.mark.parametrize("by", list(ORDERS))
+@pytest.mark.parametrize("by", list(TrackTrials.ORDERS))
 def test_every_order_holds_every_trial_once(cell, by):
     table = many(cell, 500)
     assert sorted(table.order(by).tolist()) == list(range(500))
@@ -214,7 +214,7 @@ def test_every_order_holds_every_trial_once(cell, by):
 
 def test_a_hundred_thousand_trials_open_without_a_line_for_each(cell, monkeypatch):
     table = many(cell, 100_000)
-    trials = TrialList(table, first_order(table))
+    trials = TrialList(table, table.first_order)
     drawn = set()
     draw = TrialList._trial
     monkeypatch.setattr(TrialList, "_trial", lambda self, line, *_: drawn.add(line) or draw(self, line, *_))
@@ -222,7 +222,7 @@ def test_a_hundred_thousand_trials_open_without_a_line_for_each(cell, monkeypatc
     async def journey(user):
         await user.pilot.pause()
         assert max(drawn) < 40
-        assert trials.trial == first_order(table)[0]
+        assert trials.trial == table.first_order[0]
         await user.pilot.press("G")
         await user.pilot.pause()
         assert trials.cursor == 99_999
@@ -230,14 +230,14 @@ def test_a_hundred_thousand_trials_open_without_a_line_for_each(cell, monkeypatc
         assert len(drawn) < 200
         await user.pilot.press("g", "j", "j", "k", "enter")
         await user.pilot.pause()
-        assert user.app.opened == [first_order(table)[1]]
+        assert user.app.opened == [table.first_order[1]]
 
     mounted(trials, journey)
 
 
 def test_trials_sort_by_key_and_by_heading(cell):
     table = many(cell, 300)
-    trials = TrialList(table, first_order(table))
+    trials = TrialList(table, table.first_order)
 
     async def sorted_by(user, name):
         for _ in range(500):
@@ -266,12 +266,12 @@ def test_trials_sort_by_key_and_by_heading(cell):
 
 def test_a_trial_that_misses_a_target_says_which(cell):
     table = many(cell, 400)
-    trials = TrialList(table, first_order(table))
+    trials = TrialList(table, table.first_order)
     columns = table.trials.columns
 
     async def journey(user):
         line = trials._trial(0, False).text
-        worst = int(first_order(table)[0])
+        worst = int(table.first_order[0])
         assert line.count("missed") == 2 * int((~columns.found[worst]).sum())
         assert f"{int(columns.found[worst].sum())}/2" in line
 

@@ -1,0 +1,90 @@
+"""The trials of a row of clustering: how many clusters, and how far plots are from the targets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hough_tui.experiments.scene_chunks import ClusterColumns
+from hough_tui.reports.numerals import fixed, number
+from hough_tui.ui.views.shown_run import RowTrials
+from hough_tui.ui.widgets.trial_table import PLAIN, QUIET, WRONG, Rows, TrialColumn, TrialTable, by_number
+
+
+def _columns(trials: RowTrials) -> ClusterColumns:
+    return cast("ClusterColumns", trials.columns)
+
+
+def _greatest(trials: RowTrials) -> NDArray[np.float64]:
+    """Return the greatest squared error of each trial, infinite where there is no plot."""
+    squared = _columns(trials).squared_error
+    if squared.shape[1] == 0:
+        return np.zeros(len(squared))
+    return np.where(np.isnan(squared), np.inf, squared).max(axis=1)
+
+
+def _failed_first(trials: RowTrials) -> Rows:
+    # The last key counts most.
+    return np.lexsort((trials.numbers, -_greatest(trials), -np.abs(_columns(trials).excess)))
+
+
+def _by_excess(trials: RowTrials) -> Rows:
+    return np.argsort(-_columns(trials).excess, kind="stable")
+
+
+def _by_error(trials: RowTrials) -> Rows:
+    return np.argsort(-_greatest(trials), kind="stable")
+
+
+class ClusterTrials(TrialTable):
+    """The trials behind a row of clustering."""
+
+    ORDERS = {
+        "failed first": _failed_first,
+        "trial": by_number,
+        "excess": _by_excess,
+        "error": _by_error,
+    }
+
+    @property
+    def words(self) -> str:
+        """How many trials there are, and how many count wrong."""
+        excess = _columns(self.trials).excess
+        few, many = int((excess < 0).sum()), int((excess > 0).sum())
+        return (
+            f"{len(self):,} trials · {few:,} with too few clusters, {many:,} with too many · errors in cells"
+        )
+
+    def told(self) -> list[TrialColumn]:
+        """Return the number of clusters, and the distance of each target from the nearest plot."""
+        columns = _columns(self.trials)
+        found = [
+            TrialColumn("clusters", 8, self._count, "failed first"),
+            TrialColumn("excess", 6, self._excess, "excess"),
+        ]
+        targets = self.trials.cell.world.targets
+        for index in range(columns.squared_error.shape[1]):
+            name = (targets[index].name or f"target {index + 1}")[:12]
+            found.append(TrialColumn(f"{name}\nerror", max(8, len(name)), self._error(index), "error"))
+        return found
+
+    def _count(self, row: int) -> tuple[str, str]:
+        columns = _columns(self.trials)
+        kind = WRONG if columns.excess[row] else PLAIN
+        return f"{columns.clusters[row]}/{columns.squared_error.shape[1]}", kind
+
+    def _excess(self, row: int) -> tuple[str, str]:
+        excess = int(_columns(self.trials).excess[row])
+        return f"{excess:+d}" if excess else "0", PLAIN if excess else QUIET
+
+    def _error(self, target: int) -> Callable[[int], tuple[str, str]]:
+        squared = _columns(self.trials).squared_error
+
+        def cell(row: int) -> tuple[str, str]:
+            value = float(squared[row, target])
+            return ("no plot", WRONG) if np.isnan(value) else (fixed(number(np.sqrt(value)), 2), PLAIN)
+
+        return cell
