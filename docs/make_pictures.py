@@ -94,6 +94,11 @@ async def projections(pilot: Any) -> None:
         await press(pilot, "t", "z", "v")
     else:
         await press(pilot, "f8", "t")
+    from hough_tui.ui.widgets.caption import Caption
+
+    # The last part is how long it took on this machine.
+    line = pilot.app.screen.query_one("LookPanel Caption", Caption)
+    line.parts = line.parts[:-1]
 
 
 async def clustering(pilot: Any) -> None:

@@ -83,6 +83,7 @@ class LookPanel(Widget):
     LookPanel.one-tracks #no-accumulator { display: none; }
     LookPanel.one-tracks #pair-votes { display: none; }
     LookPanel.three #panels { layout: vertical; }
+    LookPanel.three Plane, LookPanel.three PairVotes { margin-right: 1; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("y", "copy", "Copy the tracks", id="look.copy", show=False),
@@ -105,7 +106,9 @@ class LookPanel(Widget):
 
     def compose(self) -> ComposeResult:
         """Lay out the three panels."""
-        yield Caption()
+        caption = Caption()
+        caption.tell("Drawing the trial …")
+        yield caption
         with Horizontal(id="panels"):
             with Horizontal(id="plane-side"):
                 for name in NAMES:

@@ -80,6 +80,11 @@ class Chart(Widget, can_focus=True):
     def clicked(self, row: int, column: int, times: int) -> None:
         """See to a click on a cell of the picture."""
 
+    @property
+    def is_waiting(self) -> bool:
+        """Whether nothing has been given to be drawn yet: axes would be of nothing."""
+        return False
+
     def adapted(self, viewport: Viewport) -> Viewport:
         """Return a view as this chart can show it."""
         return viewport
@@ -151,6 +156,9 @@ class Chart(Widget, can_focus=True):
 
     def _draw(self) -> None:
         self._drawn_for, self._is_stale = self.size, False
+        if self.is_waiting:
+            self._lines = []
+            return
         colours = palette(self.app.current_theme.dark)
         frame, viewport = self.layout_of_parts
         picture, cursor, foot = self.drawn(viewport, colours, self.size.width)

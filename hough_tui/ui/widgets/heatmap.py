@@ -140,6 +140,10 @@ class Heatmap(Chart):
         if not is_same:
             self.changed()
 
+    @property
+    def is_waiting(self) -> bool:
+        return self._scene is EMPTY
+
     def home(self) -> Limits:
         return self._scene.home()
 

@@ -61,6 +61,10 @@ class PairVotes(Scatter):
         self._scene, self._home = EMPTY, EMPTY.home()
 
     @property
+    def is_waiting(self) -> bool:
+        return self._scene is EMPTY
+
+    @property
     def points(self) -> NDArray[np.float64]:
         return self._scene.points
 

@@ -103,6 +103,10 @@ class Plane(Scatter):
         self._has_equal_scales = False
 
     @property
+    def is_waiting(self) -> bool:
+        return self._scene is EMPTY
+
+    @property
     def points(self) -> NDArray[np.float64]:
         return self._scene.position
 
