@@ -101,6 +101,11 @@ async def projections(pilot: Any) -> None:
     line.parts = line.parts[:-1]
 
 
+async def clustering(pilot: Any) -> None:
+    """The first step by which the points of a scene are split; the steps, too, where there is room."""
+    await press(pilot, "f11", "s", "s", "s", "s", "s", "full_stop")
+
+
 async def why(pilot: Any) -> None:
     """Why the strongest cell is a peak."""
     from hough_tui.ui.widgets.heatmap import Heatmap
@@ -144,6 +149,7 @@ VIEWS: dict[str, Callable[[Any], Awaitable[None]]] = {
     "look": look,
     "projections": projections,
     "why-this-peak": why,
+    "clustering": clustering,
     "monte-carlo": monte_carlo,
     "results": results,
 }
@@ -221,6 +227,8 @@ PLACES = {
     "Look: the votes of pairs of plots (in space)": ("PairVotes",),
     "Look: the table of tracks": ("TrackGrid",),
     "Look: why this peak": ("WhyPeak",),
+    "Clustering": ("ClusteringView", "ClusterPanel"),
+    "Clustering: the range-Doppler plane": ("ClusterPlane",),
     "Monte Carlo": ("MonteCarloView", "RunField", "ExperimentForm"),
     "Monte Carlo and Results: rates as table and chart": ("RatePanel", "RateGrid"),
     "The trials behind a row": ("TrialsScreen", "TrialList"),

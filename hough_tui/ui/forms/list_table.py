@@ -118,7 +118,7 @@ class ListTable(Widget):
         """
         is_same = field.path == self.field.path and len(elements) == len(self._elements)
         self.field, self._elements, self._holder, self._unit = field, elements, holder, unit
-        self._columns = columns_of(field.models, unit, elements)
+        self._columns = tuple(filter(self.is_of_use, columns_of(field.models, unit, elements)))
         if self.is_mounted:
             self._show()
         editor = self._editor
@@ -148,6 +148,10 @@ class ListTable(Widget):
     def worked_out_cells(self, element: BaseModel) -> Sequence[str]:
         """Return the cells of those columns."""
         return ()
+
+    def is_of_use(self, column: FieldDescription) -> bool:
+        """Return whether a column is shown: some fields mean nothing in what the list is part of."""
+        return True
 
     def new_element(self) -> dict[str, Any]:
         """Return the data of a new element."""

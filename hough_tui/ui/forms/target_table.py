@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from algorithms.parameters import Dimension
 from hough_tui.reports.numerals import significant
-from hough_tui.ui.forms.fields import unit_text
+from hough_tui.ui.forms.fields import FieldDescription, unit_text
 from hough_tui.ui.forms.list_table import ListTable
 from scenarios.model import Scenario
 from scenarios.targets import Target
@@ -21,6 +21,11 @@ PART = 0.25
 
 class TargetTable(ListTable):
     """A row for each target; speed and heading (clockwise from north) are worked out."""
+
+    def is_of_use(self, column: FieldDescription) -> bool:
+        """Leave out what targets are to sensors of high resolution, where there is none."""
+        scenario = self._holder
+        return column.path[0] != "extended" or not isinstance(scenario, Scenario) or scenario.is_resolved
 
     def worked_out(self) -> Sequence[tuple[str, str]]:
         return ("Speed", unit_text(Dimension.SPEED, self._unit)), ("Heading", "°")

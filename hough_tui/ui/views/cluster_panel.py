@@ -204,7 +204,6 @@ def caption(seen: ClusterLook, swept: Mapping[str, int | float] | None = None) -
     idle = int(((clusters.label == NONE) | ~clusters.kept).sum())
     parts.append(Part(f"{len(clusters.points):,} points, {idle:,} in no plot", 2, f"{idle:,} in no plot"))
     parts.append(Part(f"seed {picture.seed}", 3))
-    parts.append(Part(f"{seen.found.seconds * 1e3:.2f} ms", 4))
     return tuple(parts)
 
 

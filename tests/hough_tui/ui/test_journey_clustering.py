@@ -421,3 +421,13 @@ def test_a_new_experiment_is_of_the_kind_that_is_chosen(drive):
         await user.sees("clustering")
 
     drive(journey, SET, size=(160, 48))
+
+
+@pytest.mark.parametrize("name", ["course-report", SET])
+def test_targets_say_how_far_they_extend_where_a_sensor_resolves_it(drive, name):
+    async def journey(user):
+        table = (await user.go("f2")).query_one("ModelForm").table(("scenarios", 0, "targets"))
+        is_told = any(column.path[0] == "extended" for column in table._columns)
+        assert is_told == (name == SET)
+
+    drive(journey, name, size=(160, 48))

@@ -12,9 +12,11 @@ from pytest_textual_snapshot import SVGImageExtension
 import hough_tui.experiments.chunks as chunks
 import hough_tui.experiments.look as looking
 import hough_tui.experiments.plot_sources as plot_sources
+import hough_tui.experiments.scene_chunks as scene_chunks
 import hough_tui.experiments.store as store
 import hough_tui.experiments.vote_cost as vote_cost
 from hough_tui.experiments.engine import Job
+from hough_tui.ui.views.cluster_panel import ClusterPanel
 from hough_tui.ui.widgets.heatmap import Heatmap
 from hough_tui.ui.widgets.pair_votes import PairVotes
 from hough_tui.ui.widgets.plane import Plane
@@ -34,7 +36,7 @@ class Noon(datetime):
 def still_clocks(monkeypatch):
     """Let nothing that is shown depend on this machine or on this day."""
     monkeypatch.setattr(looking, "time", SimpleNamespace(perf_counter=lambda: 0.0))
-    for module in (chunks, plot_sources):
+    for module in (chunks, plot_sources, scene_chunks):
         monkeypatch.setattr(module, "time", SimpleNamespace(thread_time=lambda: 0.0))
     monkeypatch.setattr(Job, "seconds", property(lambda job: 1.0))
     monkeypatch.setattr(store, "datetime", Noon)
@@ -110,3 +112,29 @@ def test_trials_in_space_look_as_they_did(drive, still_clocks, picture, size):
             await picture(user, "votes")
 
     drive(journey, "par-table-2", size=size)
+
+
+@pytest.mark.parametrize("size", SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
+def test_clustering_looks_as_it_did(drive, still_clocks, picture, size):
+    async def journey(user):
+        view = await user.go("f11")
+        panel = view.query(ClusterPanel).first()
+        await user.press("s", "s", "s", "s", "s")
+        await user.until(lambda: panel._seen and panel._seen.picture.scene.name == "interference")
+        await picture(user, "clusters")
+        await user.press(".", ".", ".")
+        await picture(user, "step")
+        for part in ("steps", "clusterings", "scenes"):
+            await user.press("f9")
+            assert view.panel == part
+            await picture(user, part)
+        await user.press("f9")
+        if size[0] > 80:
+            await user.press("f8")
+            await user.until(lambda: view.size.width == size[0])
+            await user.press("b")
+            await user.until(lambda: len(view.query(ClusterPanel)) == 2)
+            await user.until(lambda: all(found._seen for found in view.query(ClusterPanel)))
+            await picture(user, "side-by-side")
+
+    drive(journey, "range-doppler", size=size)
