@@ -77,6 +77,10 @@ class ListTable(Widget):
         self._empty = Static(f"no {within(field.label)} yet; a adds one", classes="list--empty", markup=False)
         self._message = Static("", classes="list--message", markup=False)
 
+    def shown(self, columns: tuple[FieldDescription, ...]) -> tuple[FieldDescription, ...]:
+        """Return those columns that say something of the elements of this holder."""
+        return columns
+
     @property
     def is_sound(self) -> bool:
         """Whether nothing that is typed here is wrong."""
@@ -118,7 +122,7 @@ class ListTable(Widget):
         """
         is_same = field.path == self.field.path and len(elements) == len(self._elements)
         self.field, self._elements, self._holder, self._unit = field, elements, holder, unit
-        self._columns = columns_of(field.models, unit, elements)
+        self._columns = self.shown(columns_of(field.models, unit, elements))
         if self.is_mounted:
             self._show()
         editor = self._editor

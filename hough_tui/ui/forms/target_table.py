@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from algorithms.parameters import Dimension
 from hough_tui.reports.numerals import significant
-from hough_tui.ui.forms.fields import unit_text
+from hough_tui.ui.forms.fields import FieldDescription, unit_text
 from hough_tui.ui.forms.list_table import ListTable
 from scenarios.model import Scenario
 from scenarios.targets import Target
@@ -21,6 +21,12 @@ PART = 0.25
 
 class TargetTable(ListTable):
     """A row for each target; speed and heading (clockwise from north) are worked out."""
+
+    def shown(self, columns: tuple[FieldDescription, ...]) -> tuple[FieldDescription, ...]:
+        """Leave the extent out where the scenario has no sensor to which a target is more than a plot."""
+        if isinstance(self._holder, Scenario) and self._holder.is_resolved:
+            return columns
+        return tuple(column for column in columns if column.path[0] != "extended")
 
     def worked_out(self) -> Sequence[tuple[str, str]]:
         return ("Speed", unit_text(Dimension.SPEED, self._unit)), ("Heading", "°")

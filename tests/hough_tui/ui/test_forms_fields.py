@@ -148,6 +148,11 @@ def test_columns_open_groups_and_named_vectors():
         "Birth",
         "Death",
         "Spread [km]",
+        "Extended points",
+        "Extended range spread [km]",
+        "Extended doppler spread [km/s]",
+        "Extended correlation",
+        "Extended amplitude",
     ]
     assert columns["vy [km/s]"].path == ("velocity", 1)
     clutter = columns_of([PoissonClutter], Unit.KILOMETRE)

@@ -11,6 +11,7 @@ from pytest_textual_snapshot import SVGImageExtension
 
 import hough_tui.experiments.chunks as chunks
 import hough_tui.experiments.look as looking
+import hough_tui.experiments.plot_sources as plot_sources
 import hough_tui.experiments.store as store
 import hough_tui.experiments.vote_cost as vote_cost
 from hough_tui.experiments.engine import Job
@@ -33,7 +34,8 @@ class Noon(datetime):
 def still_clocks(monkeypatch):
     """Let nothing that is shown depend on this machine or on this day."""
     monkeypatch.setattr(looking, "time", SimpleNamespace(perf_counter=lambda: 0.0))
-    monkeypatch.setattr(chunks, "time", SimpleNamespace(thread_time=lambda: 0.0))
+    for module in (chunks, plot_sources):
+        monkeypatch.setattr(module, "time", SimpleNamespace(thread_time=lambda: 0.0))
     monkeypatch.setattr(Job, "seconds", property(lambda job: 1.0))
     monkeypatch.setattr(store, "datetime", Noon)
     cost = vote_cost.VoteCost(1e-9, 1e-10)
