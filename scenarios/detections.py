@@ -86,7 +86,7 @@ class ResolvedWorld:
         return replace(self, counts=np.ones_like(self.counts), extent=extent)
 
 
-ONE_POINT = Extension(points=1, range_spread=0.0, doppler_spread=0.0)
+ONE_POINT = Extension(points=1)
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,10 +28,10 @@ class Extension(Declared):
         24, dimension=Dimension.COUNT, help="number of its points in a scan"
     )
     range_spread: NotNegative = parameter(
-        dimension=Dimension.LENGTH, help="standard deviation of its points in range"
+        0.0, dimension=Dimension.LENGTH, help="standard deviation of its points in range"
     )
     doppler_spread: NotNegative = parameter(
-        dimension=Dimension.SPEED, help="standard deviation of its points in radial speed"
+        0.0, dimension=Dimension.SPEED, help="standard deviation of its points in radial speed"
     )
     correlation: Annotated[Number, Field(ge=-1, le=1)] = parameter(
         0.0, help="of range and radial speed of its points, -1 to 1"

@@ -17,6 +17,7 @@ from hough_tui.reports.layout import Column, Sheet
 from hough_tui.reports.metrics import field_name, metric
 from hough_tui.reports.numerals import NONE, Pair, aligned, as_given, fixed, intervals, number, pair, percent
 from hough_tui.ui.views.shown_run import Identity, identity
+from scenarios.sweeps import SINGULAR
 
 METRICS = ("success_rate", "false_track_ratio")
 """What can be compared: shares that have an interval and a value in each trial."""
@@ -141,14 +142,19 @@ def _correlation(first: NDArray[np.float64], second: NDArray[np.float64]) -> flo
 
 
 def _names(rows: Sequence[Identity]) -> list[Column]:
+    told = [
+        {"set": set_name, "experiment": experiment, **dict(zip(SINGULAR.values(), parts, strict=True))}
+        for set_name, experiment, parts, _ in rows
+    ]
     columns = []
-    for heading, part in (("set", 0), ("experiment", 1), ("scenario", 2), ("initiator", 3)):
-        texts = tuple(str(row[part]) for row in rows)
-        if heading == "initiator" or len(set(texts)) > 1:
+    for heading in told[0]:
+        texts = tuple(str(row[heading] or NONE) for row in told)
+        # What runs is told always, all else where it tells rows apart.
+        if len(set(texts)) > 1 or (heading == "initiator" and any(row[heading] for row in told)):
             columns.append(Column(heading, texts, prose=True))
-    for key in dict.fromkeys(key for row in rows for key, _ in row[4]):
-        texts = aligned([as_given(dict(row[4]).get(key)) for row in rows])
-        columns.append(Column(field_name(key), texts))
+    swept = [dict(values) for *_, values in rows]
+    for key in dict.fromkeys(key for values in swept for key in values):
+        columns.append(Column(field_name(key), aligned([as_given(values.get(key)) for values in swept])))
     return columns
 
 

@@ -147,3 +147,26 @@ def test_the_gates_of_two_planes_are_those_of_a_loop(planes, votes):
     assert 5 < len(passed) < len(chunk.scan)
     every = sum(1 for first in passed for second in passed if 0 < chunk.scan[second] - chunk.scan[first] <= 3)
     assert tracks.effort["pairs_gated"][0] == every
+
+
+def test_plots_must_be_confirmed_in_so_many_planes():
+    # On a straight line in the plane xy, on a zigzag in the two others.
+    place = [(200.0 * k, 200.0 * k, 100.0 * (-1) ** k) for k in range(4)]
+    chunk = chunk_of(place, range(4), np.tile(100.0 * np.eye(3), (4, 1, 1)))
+    context = Context(4, 1.0, unit=Unit.METRE)
+    for planes, found in ((1, 1), (2, 0), (3, 0)):
+        given = {"mode": "document", "votes": 3, "planes": planes}
+        tracks = initiator("combinatorial-3d").initiate_chunk(
+            chunk, context, resolved("combinatorial-3d", context, **given)
+        )
+        assert len(tracks.theta) == found
+
+
+def test_of_each_scan_the_document_mode_takes_the_plot_nearest_to_the_common_motion():
+    place = [(200.0 * k, 100.0 * k, 20.0 * k) for k in range(4)]
+    place.insert(3, (400.0, 260.0, 40.0))
+    chunk = chunk_of(place, [0, 1, 2, 2, 3], np.tile(100.0 * np.eye(3), (5, 1, 1)))
+    context = Context(4, 1.0, unit=Unit.METRE)
+    parameters = resolved("combinatorial-3d", context, mode="document")
+    tracks = initiator("combinatorial-3d").initiate_chunk(chunk, context, parameters)
+    assert tracks.plots.tolist() == [[0, 1, 2, 4]]
