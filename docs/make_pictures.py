@@ -24,7 +24,7 @@ from typing import Any
 SIZES = {"": (120, 36), "-80x24": (80, 24)}
 MOST_BYTES = 400_000
 WIDE = 100
-SET, SETS = "course-report", {"projections": "par-table-2"}
+SET, SETS = "course-report", {"projections": "par-table-2", "clustering": "range-doppler"}
 """The set of the pictures, and those of pictures of another one."""
 
 KEPT = ("20260105-090000-course-report-a1b2", "20260105-091500-course-report-c3d4")

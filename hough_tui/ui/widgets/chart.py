@@ -147,7 +147,12 @@ class Chart(Widget, can_focus=True):
         # knows the lines that it takes.
         if self._drawn_for != self.size:
             self._draw()
-        return self._lines[y] if y < len(self._lines) else Strip.blank(self.size.width)
+        return self._lines[y] if y < len(self._lines) else Strip.blank(self.size.width, self._ground)
+
+    @property
+    def _ground(self) -> Style:
+        """The ground, which Textual does not put under the lines that a widget gives."""
+        return Style(bgcolor=self.rich_style.bgcolor)
 
     def notify_style_update(self) -> None:
         super().notify_style_update()
@@ -168,8 +173,7 @@ class Chart(Widget, can_focus=True):
             lines.append(foot)
         if os.environ.get("TERM") == "linux":
             lines = for_console(lines)
-        # Textual puts no ground under the lines that a widget gives.
-        ground = Style(bgcolor=self.rich_style.bgcolor)
+        ground = self._ground
         self._lines = [line.apply_style(ground) for line in lines]
 
     def _redraw(self) -> None:

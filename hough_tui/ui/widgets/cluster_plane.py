@@ -110,6 +110,10 @@ class ClusterPlane(Chart):
 
     # What a chart asks
 
+    @property
+    def is_waiting(self) -> bool:
+        return self._scene is EMPTY
+
     def home(self) -> Limits:
         return self._home
 

@@ -337,3 +337,24 @@ def test_numbers_of_clusters_never_hide_a_plot():
         assert plane.render_line(row).text[column : column + 3] == f"{PLOT}{PLOT}1"
 
     play(sparse([], []), journey)
+
+
+def test_without_colour_nothing_and_something_are_drawn(monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "1")
+
+    async def journey(app, plane, pilot):
+        assert not text(plane).strip()
+        plane.show(cluster_scene(look()))
+        await pilot.pause()
+        drawn = text(plane)
+        assert KEPT[0] in drawn
+        assert KEPT[1] in drawn
+        colours = {
+            segment.style.color.get_truecolor()
+            for strip in app.screen._compositor.render_strips()
+            for segment in strip
+            if segment.style is not None and segment.style.color is not None
+        }
+        assert all(red == green == blue for red, green, blue in colours)
+
+    play(EMPTY, journey)
