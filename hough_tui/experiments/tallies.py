@@ -36,7 +36,7 @@ def tally(cell: InitiationCell, columns: TrialColumns, seconds: float) -> Row:
     ratio = false_ratio(columns)
     return {
         **cell.heading(trials),
-        "targets": [target.name for target in cell.scenario.targets],
+        "target_names": [target.name for target in cell.scenario.targets],
         "success_rate": success[0],
         "success_ci95": success[1],
         "success_by_target": [float(rate) for rate in columns.found.mean(axis=0)],

@@ -164,7 +164,7 @@ def _by_target(rows: Sequence[Row]) -> list[Column]:
 
 def _target_name(rows: Sequence[Row], target: int) -> str:
     """Return what all rows call a target, else its number."""
-    names = {(list(row.get("targets") or []) + [None] * (target + 1))[target] for row in rows}
+    names = {(list(row.get("target_names") or []) + [None] * (target + 1))[target] for row in rows}
     name = names.pop() if len(names) == 1 else None
     return str(name or f"target {target + 1}")
 

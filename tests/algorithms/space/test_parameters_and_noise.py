@@ -93,7 +93,7 @@ def test_more_tracks_than_can_be_compared_are_refused_in_words(name):
     [
         ("combinatorial-3d", {}),
         ("combinatorial-3d", {"window_length": 100.0, "window_deg": 30.0}),
-        ("combinatorial-3d", {"mode": "document"}),
+        ("combinatorial-3d", {"mode": "document", "window_length": 6000.0}),
         ("hough-logic-3d", {"cell_length": 400.0}),
         ("hough-3d", {"tessellation": 3}),
     ],

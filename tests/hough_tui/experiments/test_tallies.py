@@ -26,7 +26,7 @@ def test_rates_by_hand(cell):
     row = tally(cell, columns, seconds=0.008)
     assert row["success_rate"] == pytest.approx(5 / 8)
     assert row["success_by_target"] == pytest.approx([0.75, 0.5])
-    assert row["targets"] == ["rising", "falling"]
+    assert row["target_names"] == ["rising", "falling"]
     assert row["success_control"] == pytest.approx(1 / 8)
     assert row["false_track_ratio"] == pytest.approx((0.25 + 0.5 + 0 + 0) / 4)
     assert row["false_tracks_per_trial"] == pytest.approx(0.5)

@@ -76,7 +76,7 @@ def test_wider_terminals_show_more(rows):
 
 
 def test_success_by_target_goes_before_other_columns_where_several_targets_differ(row):
-    named = {"targets": ["T1", "T2", None]}
+    named = {"target_names": ["T1", "T2", None]}
     alike = row(success_by_target=[0.95, 0.9, 0.94], **named)
     unlike = row(success_by_target=[0.95, 0.1, 0.94], **named)
     assert "T2" not in drawn(90, *rate_tables([alike], 90))
@@ -85,7 +85,7 @@ def test_success_by_target_goes_before_other_columns_where_several_targets_diffe
         assert heading in text
     assert "10.0" in text
     # A name that not all rows use names no column.
-    other = row(success_by_target=[0.95, 0.1, 0.94], targets=["T1", "T4", None])
+    other = row(success_by_target=[0.95, 0.1, 0.94], target_names=["T1", "T4", None])
     text = drawn(160, *rate_tables([unlike, other], 160))
     assert "T1" in text
     assert "target 2" in text
