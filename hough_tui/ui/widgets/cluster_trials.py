@@ -23,7 +23,8 @@ def _greatest(trials: RowTrials) -> NDArray[np.float64]:
     squared = _columns(trials).squared_error
     if squared.shape[1] == 0:
         return np.zeros(len(squared))
-    return np.where(np.isnan(squared), np.inf, squared).max(axis=1)
+    greatest: NDArray[np.float64] = np.where(np.isnan(squared), np.inf, squared).max(axis=1)
+    return greatest
 
 
 def _failed_first(trials: RowTrials) -> Rows:

@@ -66,7 +66,7 @@ class TrackTrials(TrialTable):
     @property
     def words(self) -> str:
         """How many trials there are, and how many failed."""
-        unit = self.trials.cell.scenario.unit.value
+        unit = self.trials.cell.world.unit.value
         missing = "" if not self.targets else f" · {self.missed:,} miss a target"
         return f"{len(self):,} trials{missing} · {self.with_false:,} have false tracks · lengths in {unit}"
 
@@ -80,7 +80,7 @@ class TrackTrials(TrialTable):
             TrialColumn("false", 5, self._count(columns.false), "false tracks"),
             TrialColumn("dupl.", 5, self._count(columns.duplicates), "duplicates"),
         ]
-        for index, target in enumerate(self.trials.cell.scenario.targets):
+        for index, target in enumerate(self.trials.cell.world.targets):
             name = (target.name or f"target {index + 1}")[:12]
             width = max(7, len(name))
             found.append(TrialColumn(f"{name}\nΔθ °", width, self._theta(index), "error in θ"))
