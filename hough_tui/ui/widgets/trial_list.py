@@ -74,6 +74,8 @@ class TrialList(ScrollView, can_focus=True):
         self._table = table
         self._order = order
         self.sorted_by = next(iter(table.ORDERS))
+        # The order that was asked for last, which may still be on its way.
+        self._wanted = self.sorted_by
         widths = [column.width + GAP for column in table.columns]
         self.virtual_size = Size(sum(widths), len(table) + HEADER)
 
@@ -121,7 +123,11 @@ class TrialList(ScrollView, can_focus=True):
             for name in self._table.ORDERS
             if name == "failed first" or any(column.order == name for column in self._table.columns)
         ]
-        self._sort(names[(names.index(self.sorted_by) + 1) % len(names)])
+        self._want(names[(names.index(self._wanted) + 1) % len(names)])
+
+    def _want(self, by: str) -> None:
+        self._wanted = by
+        self._sort(by)
 
     @work(thread=True, exclusive=True, exit_on_error=False, group="order")
     def _sort(self, by: str) -> None:
@@ -129,7 +135,9 @@ class TrialList(ScrollView, can_focus=True):
         self.post_message(self.Ordered(by, self._table.order(by)))
 
     def on_trial_list_ordered(self, event: Ordered) -> None:
-        """Show the trials in their new order."""
+        """Show the trials in their new order, unless another one has been asked for since."""
+        if event.by != self._wanted:
+            return
         self.sorted_by, self._order = event.by, event.order
         self.cursor = 0
         self.scroll_to(y=0, animate=False)
@@ -146,7 +154,7 @@ class TrialList(ScrollView, can_focus=True):
                 edge -= column.width + GAP
                 if edge < 0:
                     if column.order is not None:
-                        self._sort(column.order)
+                        self._want(column.order)
                     return
             return
         line = self.scroll_offset.y + place.y - HEADER

@@ -25,7 +25,7 @@ from hough_tui.ui.config import Config
 from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.forms.value_field import ValueField
 
-PATIENCE = 60.0
+PATIENCE = 240.0
 """Seconds until a wait is given up: kernels may have to be compiled on a busy machine."""
 
 SHORT_PATIENCE = 1.0

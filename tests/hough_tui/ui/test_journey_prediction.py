@@ -144,11 +144,11 @@ def test_on_a_narrow_screen_form_and_prediction_take_turns(drive):
         await user.sees("in the home cell", "false cells a batch", "memory of the accumulator")
         await user.sees("time a trial, estimated", "False cells ≤", "Ctrl+T takes it", "rising, 1 of 2")
         shown = density.shown
-        await user.sees(f"{100 * shown.mean:.1f}%", f"{100 * shown.least:.1f}%", "km).")
+        await user.sees(f"{100 * shown.mean:.1f} %", f"{100 * shown.least:.1f} %", "km).")
         assert panel.max_scroll_y == 0
         await user.press("n")
         await user.sees("2 of 2")
-        await user.sees(f"{100 * density.shown.mean:.1f}%")
+        await user.sees(f"{100 * density.shown.mean:.1f} %")
         await user.press("t")
         await user.until(lambda: user.value(*STEP) != 0.6)
         await user.press("ctrl+z", "f9")
