@@ -25,10 +25,10 @@ Array = NDArray[np.float64]
 @kernel
 def _converted_each(measured, sigma):  # type: ignore[no-untyped-def]
     axes = measured.shape[1]
-    points = np.empty((2 * axes + 1, axes))
+    ways = np.empty((2 * axes - 1, axes))
     mean, covariance = np.empty_like(measured), np.empty((len(measured), axes, axes))
     for row in range(len(measured)):
-        convert(measured[row], sigma[row], points, mean[row], covariance[row])
+        convert(measured[row], sigma[row], ways, mean[row], covariance[row])
     return mean, covariance
 
 

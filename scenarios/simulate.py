@@ -67,9 +67,9 @@ def _is_in_sector(measured, limits, sensor):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _put_converted(measured, sigma, station, sensor, points, plots, covariance, row):  # type: ignore[no-untyped-def]
+def _put_converted(measured, sigma, station, sensor, ways, plots, covariance, row):  # type: ignore[no-untyped-def]
     """Write what a polar measurement is converted to as a plot."""
-    convert(measured, sigma[sensor], points, plots[row], covariance[row])
+    convert(measured, sigma[sensor], ways, plots[row], covariance[row])
     for axis in range(len(measured)):
         plots[row, axis] += station[sensor, axis]
 
@@ -156,7 +156,7 @@ def _by_scan(seed, trial, scans, source, number, begins, order):  # type: ignore
 @kernel
 def _place_clutter(  # type: ignore[no-untyped-def]
     seed, trial, block, number, stream, source, sensor, uniform, lower, size, is_polar, station, sigma,
-    limits, place, measured, points, plots, covariance, row,
+    limits, place, measured, ways, plots, covariance, row,
 ):  # fmt: skip
     """Write a plot of clutter and, for a polar sensor, its covariance."""
     axes = len(place)
@@ -175,7 +175,7 @@ def _place_clutter(  # type: ignore[no-untyped-def]
         _to_polar(place, station, sensor, measured)
     else:
         _sector_point(u, v, w, limits, sensor, uniform[source] == VOLUME, measured)
-    _put_converted(measured, sigma, station, sensor, points, plots, covariance, row)
+    _put_converted(measured, sigma, station, sensor, ways, plots, covariance, row)
 
 
 @kernel
@@ -187,7 +187,7 @@ def _draw(  # type: ignore[no-untyped-def]
     shift = np.zeros((trials, targets, axes), np.float64)
     offsets = np.zeros(trials + 1, np.int64)
     place, measured, noise = np.empty(axes), np.empty(axes), np.empty(axes)
-    points = np.empty((2 * axes + 1, axes))
+    ways = np.empty((2 * axes - 1, axes))
     for k in range(trials):
         trial = first_trial + k
         for target in range(targets):
@@ -255,7 +255,7 @@ def _draw(  # type: ignore[no-untyped-def]
                         continue
                     _place_clutter(
                         seed, trial, block, drawn_in, stream, source, sensor, uniform, lower, size, is_polar,
-                        station, sigma, limits, place, measured, points, plots, covariance, row,
+                        station, sigma, limits, place, measured, ways, plots, covariance, row,
                     )  # fmt: skip
                     row += 1
             for target in range(targets):
@@ -282,7 +282,7 @@ def _draw(  # type: ignore[no-untyped-def]
                 if is_polar[sensor]:
                     for axis in range(axes):
                         measured[axis] += sigma[sensor, axis] * noise[axis]
-                    _put_converted(measured, sigma, station, sensor, points, plots, covariance, at)
+                    _put_converted(measured, sigma, station, sensor, ways, plots, covariance, at)
                 else:
                     for axis in range(axes):
                         place[axis] += sigma[sensor, axis] * noise[axis]
