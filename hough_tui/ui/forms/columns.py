@@ -18,6 +18,9 @@ from hough_tui.ui.forms.texts import text_of
 INHERITED = "dim italic"
 """The style of a value that is not given here but taken from around."""
 
+SYMBOL = 2
+"""The most letters of a symbol."""
+
 
 def columns_of(
     models: Sequence[type[BaseModel]], unit: Unit | None, elements: Sequence[BaseModel] = ()
@@ -44,11 +47,14 @@ def columns_of(
 
 
 def _told_apart(columns: Sequence[FieldDescription]) -> Iterator[FieldDescription]:
-    """Yield columns, those of vectors with the vector's name where theirs alone would not tell which."""
+    """Yield columns, those of vectors with the vector's name where theirs alone would not tell which.
+
+    Symbols, such as vx, tell it unless there are two of them; words, such as nearest or first, do not.
+    """
     labels = [column.label.casefold() for column in columns]
     for column in columns:
         is_component = isinstance(column.path[-1], int)
-        if is_component and labels.count(column.label.casefold()) > 1:
+        if is_component and (labels.count(column.label.casefold()) > 1 or len(column.label) > SYMBOL):
             yield replace(column, label=f"{label_of(str(column.path[-2]))} {column.label}")
         else:
             yield column

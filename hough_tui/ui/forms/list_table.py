@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel
 from rich.text import Text
-from textual import on
+from textual import events, on
 from textual.app import ComposeResult
 from textual.binding import Binding
 from textual.content import Content
@@ -212,6 +212,12 @@ class ListTable(Widget):
         event.stop()
         self._edit(event.coordinate)
 
+    @on(events.DescendantFocus)
+    def _entered(self) -> None:
+        if not self._elements:
+            # An empty table has no height that the form could scroll to.
+            self.scroll_visible(animate=False)
+
     @on(ListBar.Pressed)
     async def _pressed(self, event: ListBar.Pressed) -> None:
         event.stop()
@@ -247,6 +253,8 @@ class ListTable(Widget):
         self._table.show(headings, rows)
         if self._new_row is not None and self._new_row < len(rows):
             self._table.move_cursor(row=self._new_row, column=0, animate=False)
+            # The table has grown, maybe beyond what can be seen of the form.
+            self.call_after_refresh(self._table.scroll_visible, animate=False)
         self._new_row = None
         self._empty.display = not rows
 

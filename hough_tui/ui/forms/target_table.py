@@ -13,6 +13,7 @@ from hough_tui.reports.numerals import significant
 from hough_tui.ui.forms.fields import FieldDescription, unit_text
 from hough_tui.ui.forms.list_table import ListTable
 from scenarios.model import Scenario
+from scenarios.sensors import PolarSensor
 from scenarios.targets import Target
 
 PART = 0.25
@@ -33,17 +34,38 @@ class TargetTable(ListTable):
     def worked_out_cells(self, element: BaseModel) -> Sequence[str]:
         assert isinstance(element, Target)
         east, north = element.velocity[:2]
-        if element.stands_still:
-            return "0", ""
-        return significant(math.hypot(east, north)), f"{math.degrees(math.atan2(east, north)) % 360.0:.1f}"
+        speed = significant(math.hypot(*element.velocity))
+        if east == 0.0 and north == 0.0:
+            # At rest, or straight up or down.
+            return speed, ""
+        return speed, f"{math.degrees(math.atan2(east, north)) % 360.0:.1f}"
 
     def new_element(self) -> dict[str, Any]:
-        """Return a target in the middle of the region, eastward bound."""
+        """Return a target in the middle of the region, eastward bound, as fast as the last one that moves."""
         scenario = self._holder
         if not isinstance(scenario, Scenario):
             return super().new_element()
         box = scenario.box
-        speed = PART * (box.upper[0] - box.lower[0]) / (scenario.scans * scenario.interval)
-        # One figure: a start to be edited, not a result.
-        velocity = [float(f"{speed:.1g}"), *[0.0] * (scenario.dimensions - 1)]
-        return {"position": list(box.centre), "velocity": velocity}
+        speeds = [math.hypot(*target.velocity) for target in scenario.targets]
+        across = PART * (box.upper[0] - box.lower[0]) / (scenario.scans * scenario.interval)
+        speed = next(filter(None, reversed(speeds)), across)
+        # One figure or three: a start to be edited, not a result.
+        digits = 1 if speed == across else 3
+        velocity = [float(f"{speed:.{digits}g}"), *[0.0] * (scenario.dimensions - 1)]
+        return {"position": _middle(scenario), "velocity": velocity}
+
+
+def _middle(scenario: Scenario) -> list[float]:
+    """Return the middle of what the first sensor sees; the middle of a box around it may lie outside."""
+    sensor = scenario.sensor
+    if not isinstance(sensor, PolarSensor):
+        return list(scenario.box.centre)
+    distance, azimuth, elevation = (0.5 * (low + high) for low, high in sensor.limits)
+    if sensor.dimensions == 2:
+        elevation = 0.0
+    ground = distance * math.cos(elevation)
+    offset = ground * math.sin(azimuth), ground * math.cos(azimuth), distance * math.sin(elevation)
+    return [
+        round(place + by, -int(math.log10(distance)) + 2)
+        for place, by in zip(sensor.station, offset, strict=False)
+    ]

@@ -249,3 +249,36 @@ def test_a_set_in_space_is_edited_in_its_forms(drive):
         assert "trial 0 of seed 1" in user.view.query_one(Caption).parts[0].text
 
     drive(journey, "par-table-2", size=(160, 60))
+
+
+def test_lists_of_a_set_in_space_are_filled_on_a_small_terminal(drive):
+    async def journey(user):
+        await user.go("f2")
+        sensors = user.form.table(("scenarios", 0, "further_sensors"))
+        targets = user.form.table(("scenarios", 0, "targets"))
+        # Where an empty list has the focus it is seen, and so is what is added to it.
+        await user.until(lambda: "Further sensors" not in user.text)
+        sensors._table.focus()
+        await user.sees("no further sensors yet; a adds one")
+        await user.press("a")
+        await user.sees("  0  polar")
+        headings = [column.label.plain.split("\n")[0] for column in sensors._table.ordered_columns]
+        # Columns that say of what they are, and none that no sensor here can have.
+        assert {"Range nearest", "Range farthest", "Azimuth first", "Azimuth last", "Elevation"} <= set(
+            headings
+        )
+        assert not [name for name in headings if name == "σ" or name.startswith("Resolution")]
+
+        # A new target flies where the radar sees it, at a speed that the set has already.
+        targets._table.focus()
+        await user.press("a")
+        await user.until(lambda: len(user.value("scenarios", 0, "targets")) == 2)
+        new = user.value("scenarios", 0, "targets", 1)
+        assert new.position == pytest.approx((0.0, 20400.0, 1800.0), abs=50)
+        assert new.velocity == (251.0, 0.0, 0.0)
+        # Speed is that in space, and a target that climbs straight up has one.
+        assert targets.worked_out_cells(new) == ("251", "90.0")
+        climbing = new.model_copy(update={"velocity": (0.0, 0.0, 100.0)})
+        assert targets.worked_out_cells(climbing) == ("100", "")
+
+    drive(journey, "par-table-2", size=(80, 24))
