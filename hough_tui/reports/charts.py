@@ -256,10 +256,22 @@ def _legend(series: Sequence[Series], width: int, most: int, colour: bool) -> li
         named = sum(line.count("   ") + 1 for line in lines)
         lines.append(f"and {len(series) - named} more")
     if colour:
-        for index, one in enumerate(series):
-            paint = f"\x1b[38;5;{COLOURS[index % len(COLOURS)]}m{one.marker}\x1b[0m"
-            lines = [line.replace(f"{one.marker}{NO_BREAK}", f"{paint}{NO_BREAK}") for line in lines]
+        lines = _painted(lines, [one.marker for one in series])
     return [line.replace(NO_BREAK, " ") for line in lines]
+
+
+def _painted(lines: Sequence[str], markers: Sequence[str]) -> list[str]:
+    """Return the lines of a legend with coloured markers: letters are markers, too, and not only these."""
+    painted = 0
+
+    def paint(found: re.Match[str]) -> str:
+        nonlocal painted
+        if painted == len(markers) or found[2] != markers[painted]:
+            return found[0]
+        painted += 1
+        return f"{found[1]}\x1b[38;5;{COLOURS[(painted - 1) % len(COLOURS)]}m{found[2]}\x1b[0m{NO_BREAK}"
+
+    return [re.sub(f"(^|   )(.){NO_BREAK}", paint, line) for line in lines]
 
 
 def _ages(scan: NDArray[np.int32]) -> NDArray[np.int64]:

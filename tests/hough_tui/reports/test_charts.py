@@ -102,6 +102,19 @@ def test_more_series_than_the_legend_has_room_for(row):
     assert text.endswith(f"and {len(rows) - 6} more")
 
 
+def test_letters_are_markers_of_a_legend_in_colour_too(row):
+    # As many series as there are markers, "m" among them, with which an escape code of colour ends; and
+    # names whose words end in letters that are markers.
+    rows = [row(scenario="alpha em", initiator=f"gamma {index}", swept={}) for index in range(len(MARKERS))]
+    text = rate_chart(rows, "success_rate", 200, 40, True)
+    legend = [line for line in text.split("\n") if "gamma" in line]
+    assert plain("\n".join(legend)) == "\n".join(
+        line for line in rate_chart(rows, "success_rate", 200, 40, False).split("\n") if "gamma" in line
+    )
+    painted = re.findall(r"\x1b\[38;5;\d+m(.)\x1b\[0m", "\n".join(legend))
+    assert painted == list(MARKERS)
+
+
 def test_every_plot_is_a_dot():
     x, y = np.meshgrid(np.linspace(2, 98, 7), np.linspace(2, 98, 5))
     text = plane(x.ravel(), y.ravel())
