@@ -40,6 +40,10 @@ TALL, WIDE, BROAD = 27, 120, 90
 """Lines from which table and chart stand above each other; columns of the terminal, and of the panel,
 from which they stand side by side."""
 
+STACKED, NOTED, MOST_NOTES = 0.6, 1 / 3, 8
+"""Of the panel's lines, the share of table and notes where the chart stands below; of these, the share that
+a long table leaves to its notes; and the most lines of notes."""
+
 
 TABLES: dict[type[Cell], type[TrialTable]] = {InitiationCell: TrackTrials, ClusteringCell: ClusterTrials}
 """The tables of the trials of each kind of row."""
@@ -52,8 +56,8 @@ class RatePanel(Widget):
     RatePanel { layout: vertical; height: 1fr; background: $surface; }
     RatePanel #rates { height: 1fr; }
     RatePanel #chart { height: 1fr; display: none; }
-    RatePanel RateGrid { height: auto; max-height: 1fr; }
-    RatePanel #notes { height: auto; max-height: 8; padding: 0 1; scrollbar-size: 1 1; }
+    RatePanel RateGrid { height: auto; }
+    RatePanel #notes { height: auto; padding: 0 1; scrollbar-size: 1 1; }
     RatePanel.-chart #rates { display: none; }
     RatePanel.-chart #chart { display: block; }
     RatePanel.-stacked #rates { display: block; height: auto; max-height: 60%; }
@@ -99,6 +103,7 @@ class RatePanel(Widget):
         super().__init__(id=id)
         self.shown: ShownRun | None = None
         self._rows: tuple[Row, ...] = ()
+        self._said = Text()
 
     def compose(self) -> ComposeResult:
         """Lay out the table above its notes, and the chart below the choice of its metric."""
@@ -143,6 +148,7 @@ class RatePanel(Widget):
         self.set_class(is_tall, "-stacked")
         self.set_class(is_broad and not is_tall, "-beside")
         self.refresh_bindings()
+        self.call_after_refresh(self._share_lines)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the switch only where table and chart take turns."""
@@ -207,6 +213,19 @@ class RatePanel(Widget):
             for warning in sheet.warnings:
                 text.append(f"\n{warning}")
         self.query_one("#notes Static", Static).update(text)
+        self._said = text
+        self.call_after_refresh(self._share_lines)
+
+    def _share_lines(self) -> None:
+        """Give the notes the lines that a short table leaves, and a part of them all below a long one."""
+        rates, notes = self.query_one("#rates"), self.query_one("#notes")
+        lines = int(STACKED * self.size.height) if self.has_class("-stacked") else self.size.height
+        width = max(1, rates.size.width - notes.gutter.width)
+        wanted = len(self._said.wrap(self.app.console, width)) if self._said else 0
+        table = self.grid.virtual_size.height + self.grid.scrollbar_size_horizontal
+        given = min(wanted, MOST_NOTES, max(int(NOTED * lines), lines - table))
+        notes.styles.max_height = max(1, given)
+        self.grid.styles.max_height = max(1, lines - given)
 
     # The trials
 

@@ -145,6 +145,24 @@ def test_trials_and_seed_of_the_experiment_unless_others_are_given():
     drive(journey)
 
 
+@pytest.mark.parametrize("size", [(80, 24), (160, 30), (160, 48)])
+def test_a_long_table_leaves_room_for_its_notes(size):
+    async def journey(user):
+        user.view.query_one("#experiment", Select).value = ""
+        await user.run("4")
+        assert len(user.column("initiator")) == 15
+        rates, notes = user.panel.query_one("#rates"), user.panel.query_one("#notes")
+        await user.until(lambda: notes.region.bottom <= rates.region.bottom and notes.size.height >= 3)
+        seen = [strip.text for strip in user.app.screen._compositor.render_strips()]
+        below = " ".join(line[rates.region.x : rates.region.right] for line in seen[notes.region.y :])
+        assert "A track matches a target" in below
+        # The table keeps the greater part, and no line between the two is lost.
+        assert user.panel.grid.region.bottom == notes.region.y
+        assert user.panel.grid.size.height > notes.size.height
+
+    drive(journey, size=size)
+
+
 def test_all_experiments_stand_in_one_table():
     async def journey(user):
         select = user.view.query_one("#experiment", Select)
