@@ -14,6 +14,7 @@ from algorithms.initiators.base import ChunkInitiator
 from algorithms.plots import PlotChunk
 from algorithms.scoring import Scores, score
 from algorithms.tracks import TrackChunk
+from hough_tui.experiments.choice import ignores_z
 from hough_tui.experiments.columns import TrialColumns
 from hough_tui.experiments.plain import initiate_trials
 from hough_tui.experiments.plot_sources import PlotSource, plot_source, stage_key
@@ -63,6 +64,7 @@ class InitiationCell(Cell):
         return {
             **Cell.heading(self, trials),
             "unit": self.scenario.unit.value,
+            "ignores_z": ignores_z(self.entry, self.scenario),
         }
 
     def blank(self) -> Row:

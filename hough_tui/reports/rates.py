@@ -174,23 +174,33 @@ def _notes(rows: Sequence[Row], unit: str) -> tuple[str, ...]:
     words = criterion_words(rows[0].get("criterion"), unit)
     if len(scenarios) == 1 and scenarios[0]:
         words = f"Scenario {scenarios[0]}. {words}".rstrip()
-    return tuple(filter(None, (words, trial_words(rows), *_efforts(rows))))
+    return tuple(filter(None, (words, trial_words(rows), *_flat(rows), *_efforts(rows))))
 
 
 def _efforts(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield what initiators counted of their work, one sentence an initiator."""
+    """Yield what initiators counted of their work, one sentence for those that counted the same."""
     told: dict[str, dict[str, list[float]]] = {}
     for row in rows:
         for name, count in (row.get("effort_per_trial") or {}).items():
             counts = told.setdefault(str(row.get("initiator") or ""), {}).setdefault(name, [])
             counts.append(float(count))
+    alike: dict[str, list[str]] = {}
     for initiator, counts in told.items():
         parts = [
             f"{name.replace('_', ' ')} {significant(min(found))}"
             + (f" to {significant(max(found))}" if significant(min(found)) != significant(max(found)) else "")
             for name, found in counts.items()
         ]
-        yield f"{initiator}, on the mean of a trial: {', '.join(parts)}."
+        alike.setdefault(", ".join(parts), []).append(initiator)
+    for words, initiators in alike.items():
+        yield f"{', '.join(initiators)}, on the mean of a trial: {words}."
+
+
+def _flat(rows: Sequence[Row]) -> Iterator[str]:
+    """Yield which initiators look at x and y alone, of plots in space."""
+    names = dict.fromkeys(str(row.get("initiator") or "") for row in rows if row.get("ignores_z"))
+    if names:
+        yield f"{', '.join(names)} work{'s' if len(names) == 1 else ''} in the plane: z is ignored."
 
 
 def _share_without_track(row: Row) -> float:

@@ -29,7 +29,7 @@ ROW = {
 FURTHER = {"complete"}
 FURTHER_IN_ROW = {
     "experiment", "seed", "unit", "success_control_ci95", "votes_outside_per_trial",
-        "pure_track_ratio", "effort_per_trial", "parameters", "target_names",
+        "pure_track_ratio", "effort_per_trial", "parameters", "target_names", "ignores_z",
 }  # fmt: skip
 
 SET = """\

@@ -92,6 +92,29 @@ def test_success_by_target_goes_before_other_columns_where_several_targets_diffe
     assert "T4" not in text
 
 
+def test_what_was_counted_is_said_once_for_all_who_counted_the_same(row):
+    counted = [
+        ("cht", {"pairs": 3752.0, "pairs_gated": 44.4}),
+        ("cht", {"pairs": 3752.0, "pairs_gated": 45.0}),
+        ("logic", {"pairs": 3752.0, "pairs_gated": 44.4}),
+        ("lines", {"pairs": 3752.0, "pairs_gated": 45.0}),
+        ("lines", {"pairs": 3752.0, "pairs_gated": 44.4}),
+    ]
+    text = whole(
+        drawn(100, *rate_tables([row(initiator=name, effort_per_trial=e) for name, e in counted], 100))
+    )
+    assert "cht, lines, on the mean of a trial: pairs 3,752, pairs gated 44.4 to 45." in text
+    assert "logic, on the mean of a trial: pairs 3,752, pairs gated 44.4." in text
+
+
+def test_who_ignores_z_is_said(row):
+    flat, deep = row(initiator="flat", ignores_z=True), row(initiator="deep", ignores_z=False)
+    also = row(initiator="also-flat", ignores_z=True)
+    assert "flat works in the plane: z is ignored." in whole(drawn(100, *rate_tables([flat, deep], 100)))
+    assert "flat, also-flat work in the plane" in whole(drawn(100, *rate_tables([flat, also], 100)))
+    assert "z is ignored" not in whole(drawn(100, *rate_tables([deep], 100)))
+
+
 def test_criteria_in_words(rows):
     first, second, third = (whole(drawn(100, table)) for table in rate_tables(rows, 100))
     assert "A track matches a target when |Δρ| ≤ 3 km, θ not compared." in first
