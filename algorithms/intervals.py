@@ -71,3 +71,23 @@ def normal_interval(values: ArrayLike, z: float = Z95) -> tuple[float, float]:
         return -math.inf, math.inf
     half = z * float(values.std(ddof=1)) / math.sqrt(len(values))
     return mean - half, mean + half
+
+
+def count_interval(values: ArrayLike, z: float = Z95) -> tuple[float, float]:
+    """Return the interval of the mean of per-trial counts.
+
+    Parameters
+    ----------
+    values : per-trial counts, shape (n,), n ≥ 1
+    z : normal quantile
+
+    Notes
+    -----
+    That of the normal distribution, but where nothing was counted at all: what has not been seen in n
+    trials may still happen, and the exact upper end of a Poisson mean, 3.7 / n for 95 %, is given.
+    """
+    values = np.asarray(values, dtype=float)
+    if values.any():
+        low, high = normal_interval(values, z)
+        return max(0.0, low), high
+    return 0.0, -math.log(0.5 * math.erfc(z / math.sqrt(2.0))) / len(values)

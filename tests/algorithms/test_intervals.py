@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from scipy.stats import binomtest, norm
+from scipy.stats import binomtest, chi2, norm
 
-from algorithms.intervals import Z95, effective_count, mean_interval, wilson
+from algorithms.intervals import Z95, count_interval, effective_count, mean_interval, normal_interval, wilson
 
 steady = settings(
     deadline=None, derandomize=True, max_examples=200, suppress_health_check=[HealthCheck.too_slow]
@@ -93,3 +93,17 @@ def test_the_interval_covers_the_truth_as_often_as_it_says():
         if low <= rate <= high:
             covered += math.comb(trials, found) * rate**found * (1 - rate) ** (trials - found)
     assert covered == pytest.approx(0.95, abs=0.02)
+
+
+@pytest.mark.parametrize("trials", [1, 20, 1000])
+def test_what_was_not_seen_may_still_happen(trials):
+    low, high = count_interval(np.zeros(trials))
+    # The exact interval of a Poisson mean, by its relation to chi-squared.
+    assert (low, high) == pytest.approx((0.0, chi2(2).ppf(0.975) / 2 / trials), rel=1e-12)
+
+
+def test_what_was_seen_has_the_interval_of_the_normal_distribution_above_0():
+    many, few = np.random.default_rng(1).poisson(4.0, 500), np.zeros(1000)
+    few[7] = 1
+    assert count_interval(many) == normal_interval(many)
+    assert count_interval(few) == (0.0, normal_interval(few)[1])

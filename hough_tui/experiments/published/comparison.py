@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.errors import RequestError
-from algorithms.intervals import Z95, effective_count, mean_interval, normal_interval
+from algorithms.intervals import Z95, count_interval, effective_count, mean_interval, normal_interval
 from algorithms.parameters import unknown
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import Plan, plan_run
@@ -92,7 +92,8 @@ def _compared(table: PublishedTable, entry: Entry, columns: Columns) -> dict[str
         "trials_counted": len(values),
     }
     if len(values):
-        interval = mean_interval if measure.is_share else normal_interval
+        around = count_interval if measure.is_count else normal_interval
+        interval = mean_interval if measure.is_share else around
         test = is_consistent_rate if measure.is_share else is_consistent_mean
         told["measured"] = float(values.mean())
         low, high = interval(values)

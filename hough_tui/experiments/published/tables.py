@@ -23,11 +23,13 @@ class Measure:
     ----------
     values : float64 (trials,), of the columns of a cell; NaN for a trial that does not count
     is_share : whether each value lies in [0, 1], so that the mean is a rate
+    is_count : whether each value is a count
     is_root : whether values are squares, and the root of their mean is told
     """
 
     values: PerTrial
     is_share: bool = False
+    is_count: bool = False
     is_root: bool = False
 
 
@@ -52,9 +54,9 @@ MEASURES: dict[str, Measure] = {
     "success_rate": Measure(lambda columns: columns.found.mean(axis=1), is_share=True),
     "false_track_ratio": Measure(false_ratio, is_share=True),
     "success_control": Measure(lambda columns: columns.control_found.mean(axis=1), is_share=True),
-    "false_tracks_per_trial": Measure(lambda columns: columns.false.astype(np.float64)),
+    "false_tracks_per_trial": Measure(lambda columns: columns.false.astype(np.float64), is_count=True),
     "pure_track_ratio": Measure(_pure, is_share=True),
-    "duplicates_per_trial": Measure(lambda columns: columns.duplicates.astype(np.float64)),
+    "duplicates_per_trial": Measure(lambda columns: columns.duplicates.astype(np.float64), is_count=True),
     "theta_mse": Measure(lambda columns: _square_error(columns.theta_error)),
     "rho_mse": Measure(lambda columns: _square_error(columns.rho_error)),
     "count_exact_rate": Measure(lambda columns: (columns.excess == 0).astype(np.float64), is_share=True),

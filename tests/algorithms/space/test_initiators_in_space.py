@@ -167,6 +167,45 @@ def test_identical_plots_and_none(name):
         assert len(algorithm.initiate_chunk(chunk, context, parameters).theta) == 0
 
 
+@pytest.mark.parametrize("copies", [2, 3])
+@pytest.mark.parametrize(
+    ("name", "changes"), [*((name, {}) for name in INITIATORS), ("combinatorial-3d", {"mode": "document"})]
+)
+def test_each_copy_of_a_plot_is_a_plot(name, changes, copies):
+    # One target, each of its plots reported several times at the very same place.
+    context = scene(([0, 20000, 3000], [250, 0, 0])).context
+    scan = np.repeat(np.arange(4), copies).astype(np.int32)
+    noise = np.repeat(np.random.default_rng(1).normal(size=(4, 3)) * 30.0, copies, axis=0)
+    place = np.array([0.0, 20000.0, 3000.0]) + scan[:, None] * np.array([250.0, 0.0, 0.0]) + noise
+    covariance = np.tile(np.eye(3) * 900.0, (len(scan), 1, 1))
+    chunk = PlotChunk(scan, scan.astype(float), place, np.array([0, len(scan)]), covariance)
+    algorithm = initiator(name)
+    tracks = algorithm.initiate_chunk(
+        chunk, context, validated(algorithm.parameters, changes, name).resolved(context)
+    )
+    # As many tracks as copies, without a plot in common; connected plots are one track in the document's mode.
+    used = tracks.plots[tracks.plots >= 0]
+    assert len(tracks.theta) == (1 if changes else copies)
+    assert len(used) == len(set(used.tolist())) == 4 * len(tracks.theta)
+
+
+@pytest.mark.parametrize(
+    ("place", "speed"),
+    [
+        ([0, 20000, 3000], [250, 0, 0]),
+        ([0, 20000, 3000], [0, 250, 0]),
+        ([3000, 4000, 3000], [0, 0, 100]),
+        ([-375, 0, 5000], [250, 0, 0]),
+    ],
+    ids=["along x", "along y", "vertical", "through the zenith"],
+)
+def test_the_document_mode_finds_every_direction_where_there_is_no_noise(place, speed):
+    radar = {**RADAR, "sigma_range": 0, "sigma_azimuth_deg": 0, "sigma_elevation_deg": 0}
+    scores, tracks, _ = measured(scene((place, speed), radar=radar), "combinatorial-3d", 5, mode="document")
+    assert scores.found.all()
+    assert (tracks.counts == 1).all()
+
+
 @pytest.mark.parametrize("name", INITIATORS)
 def test_a_plane_in_which_all_plots_coincide(name):
     # Exactly vertical, without noise: in the plane xy there is no direction at all.
