@@ -183,7 +183,7 @@ def test_each_copy_of_a_plot_is_a_plot(name, changes, copies):
     tracks = algorithm.initiate_chunk(
         chunk, context, validated(algorithm.parameters, changes, name).resolved(context)
     )
-    # As many tracks as copies, without a plot in common; in the document's mode connected plots are one track.
+    # As many tracks as copies, without a plot in common; the document's mode joins connected plots.
     used = tracks.plots[tracks.plots >= 0]
     assert len(tracks.theta) == (1 if changes else copies)
     assert len(used) == len(set(used.tolist())) == 4 * len(tracks.theta)
