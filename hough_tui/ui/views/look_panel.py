@@ -84,6 +84,8 @@ class LookPanel(Widget):
     LookPanel.one-tracks #pair-votes { display: none; }
     LookPanel.three #panels { layout: vertical; }
     LookPanel.three Plane, LookPanel.three PairVotes { margin-right: 1; }
+    LookPanel.three.without-votes #vote-side { height: 12; }
+    LookPanel.three.without-votes #no-accumulator { height: 2; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("y", "copy", "Copy the tracks", id="look.copy", show=False),
@@ -127,7 +129,7 @@ class LookPanel(Widget):
         self.query_one(Caption).tell(why)
         self.query_one("#no-accumulator", Static).update(why)
         self.add_class("without-accumulator")
-        self.remove_class("with-pairs")
+        self.remove_class("with-pairs", "without-votes")
         self.query_one(TrackGrid).clear()
         if drawn is not None:
             self._show_planes(drawn.scenario, lambda axes: picture_scene(drawn, (), axes))
@@ -143,6 +145,7 @@ class LookPanel(Widget):
             self._light_up(NOTHING)
         self.set_class(seen.accumulator is None, "without-accumulator")
         self.set_class(seen.plane_votes is not None, "with-pairs")
+        self.set_class(seen.accumulator is None and seen.plane_votes is None, "without-votes")
         self.query_one("#no-accumulator", Static).update("This initiator has no accumulator.")
         if seen.accumulator is not None:
             self.query_one(Heatmap).show(heatmap_scene(seen, self.layer))

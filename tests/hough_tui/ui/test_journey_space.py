@@ -106,6 +106,23 @@ def test_from_the_rings_to_a_track_and_its_votes(drive, size):
     drive(journey, "par-table-2", size=size)
 
 
+def test_planes_have_the_room_of_votes_that_an_initiator_has_not(drive):
+    async def journey(user):
+        panel = await together(user)
+        height = panel.query_one(Plane).size.height
+        await user.press("i", "i")
+        await user.sees("logic on together, trial 0", "This initiator has no accumulator.", "climb m/s")
+        await user.settle()
+        assert panel.query_one(Plane).size.height >= 1.4 * height
+        assert panel.query_one(TrackGrid).size.height >= 6
+        await user.press("I", "I")
+        await user.sees("cht on together, trial 0")
+        await user.settle()
+        assert panel.query_one(Plane).size.height == height
+
+    drive(journey, "par-table-2", size=(160, 48))
+
+
 def test_cursor_and_shared_axes_are_the_same_in_all_planes(drive):
     async def journey(user):
         panel = await together(user)
