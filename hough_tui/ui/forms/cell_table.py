@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rich.text import Text
+from textual.actions import SkipAction
 from textual.binding import Binding
 from textual.coordinate import Coordinate
 from textual.geometry import Region
@@ -72,6 +73,20 @@ class CellTable(DataTable[Text], inherit_bindings=False):
                 self.add_row(*now, key=str(row), label=Text(str(row), "dim"))
             self.move_cursor(row=min(place.row, len(cells) - 1), column=place.column, animate=False)
         self._shown = cells
+
+    def action_cursor_up(self) -> None:
+        """Go to the row above; of no rows, let the form go to the field before."""
+        self._skip_if_empty()
+        super().action_cursor_up()
+
+    def action_cursor_down(self) -> None:
+        """Go to the row below; of no rows, let the form go to the next field."""
+        self._skip_if_empty()
+        super().action_cursor_down()
+
+    def _skip_if_empty(self) -> None:
+        if not self.row_count:
+            raise SkipAction
 
     def cell_region(self, place: Coordinate) -> Region:
         """Return where a cell is now, within the table."""

@@ -277,6 +277,15 @@ def test_lists_of_a_set_in_space_are_filled_on_a_small_terminal(drive):
         await user.until(lambda: "Further sensors" not in user.text)
         sensors._table.focus()
         await user.sees("no further sensors yet; a adds one")
+        # The arrows do not end there: there is no row that they could go to.
+        clutter = user.form.table(("scenarios", 0, "clutter"))
+        await user.press("down")
+        assert user.app.focused is clutter._table
+        sensors._table.focus()
+        await user.press("up")
+        above = user.form.field(("scenarios", 0, "sensor", "resolution", "doppler_cells"))
+        assert above in user.app.focused.ancestors
+        sensors._table.focus()
         await user.press("a")
         await user.sees("  0  polar")
         headings = [column.label.plain.split("\n")[0] for column in sensors._table.ordered_columns]
