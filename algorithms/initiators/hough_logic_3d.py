@@ -141,7 +141,7 @@ class HoughLogic3D(SpaceInitiator):
 
     References
     ----------
-    G. Wang, F. Su and Y. He, "Track initiation in three dimensions by Hough transform and logic",
+    G. Wang, F. Su and Y. He, "Hough transform and logic based track initiator in three dimensional space",
     Journal of System Simulation 16(10), 2004, as Wang and Zhao (2014) compare with it; the cells of 15° and
     1 km are theirs. Deviations: the gate allows for noise, and the logic's gates are the χ² of a
     fit. That it fails on targets which fly across a plane, as published, follows only from
