@@ -18,7 +18,7 @@ from algorithms.clustering.parameters import MODES, Clustering
 from algorithms.errors import RequestError
 from algorithms.parameters import Problem
 from hough_tui.experiments.scene_look import ClusterLook, cluster_look, scene_picture, scene_seed
-from hough_tui.ui.messages import ElementAdded, FieldEdited
+from hough_tui.ui.messages import ElementAdded, FieldEdited, SetShown
 from hough_tui.ui.naming import free_name
 from hough_tui.ui.screens.choice import Choice
 from hough_tui.ui.views.cluster_panel import ClusterPanel
@@ -392,3 +392,4 @@ class ClusteringView(Widget):
                 panel.refuse(seen)
             else:
                 panel.show(seen, swept)
+        self.post_message(SetShown())
