@@ -11,11 +11,12 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.clustering.cells import cell_of, extent_of_cell
 from algorithms.clustering.clusters import NONE, Clusters
 from algorithms.clustering.comparisons import TooFewPoints
 from algorithms.clustering.ellipse import Ellipse
 from algorithms.clustering.modes import cluster, cluster_with_splits
-from algorithms.clustering.parameters import MODES, Clustering, SplittingClustering
+from algorithms.clustering.parameters import MODES, Clustering, Recommended, SplittingClustering
 from algorithms.clustering.points import Points
 from algorithms.clustering.splitting import Splits
 from algorithms.clustering.tree import Step, steps
@@ -99,6 +100,41 @@ def given_clustering(
         if name in model.model_fields and name not in data:
             raise RequestError(f"mode {mode} needs {option}: {model.model_fields[name].description}")
     return validated(model, data, f"mode {mode}"), notes
+
+
+def with_cells(parameters: Clustering, recording: PointRecording) -> tuple[Clustering, list[str]]:
+    """Return the parameters with the cells of recorded points, and in words what was assumed of them.
+
+    Parameters
+    ----------
+    parameters : as given; cells that were given stay
+    recording : whose points tell the others
+
+    Notes
+    -----
+    The default of a cell, 1, is that of a scene. Points in km would all lie in one such cell, and none of
+    their sets would be as narrow as a target.
+    """
+    if not isinstance(parameters, Recommended):
+        return parameters, []
+    found, notes = {}, []
+    axes = (
+        ("range", recording.points.range, parameters.range_extent, parameters.range_cell),
+        ("doppler", recording.points.doppler, parameters.doppler_extent, parameters.doppler_cell),
+    )
+    for axis, values, extent, cell in axes:
+        if f"{axis}_cell" not in parameters.model_fields_set:
+            found[f"{axis}_cell"] = cell = cell_of(values, extent)
+            if cell == 0.0:
+                notes.append(f"{axis}_cell is not given: 0 is taken, for the points lie on no grid of cells")
+            elif cell != 1.0:
+                notes.append(f"{axis}_cell is not given: {cell:g} is taken, the step of the points")
+        elif extent_of_cell(cell) > extent:
+            notes.append(
+                f"{axis}_cell {cell:g} alone has an extent of {extent_of_cell(cell):.3g}, more than "
+                f"{axis}_extent {extent:g}: every set is too wide, and is split while it has a gap"
+            )
+    return parameters.model_copy(update=found), notes
 
 
 def cluster_recording(recording: PointRecording, parameters: Clustering) -> Clustered:

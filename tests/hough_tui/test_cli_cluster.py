@@ -273,6 +273,48 @@ def test_simulated_points_are_clustered_by_dwell_as_simulate_does_it(cli, tmp_pa
         assert json.loads(out)["scans"] == 8
 
 
+def test_cells_that_are_not_given_are_those_of_the_points(cli, tmp_path):
+    cli("simulate", "range-doppler", "-o", "simulated.csv")
+    extents = ("--range-extent", 0.24, "--doppler-extent", 0.012)
+    given = ("--set", "range_cell=0.015", "--set", "doppler_cell=0.001")
+    _, out, _ = cli("cluster", "simulated.csv", *extents, *given, "--json")
+    known = json.loads(out)
+    status, out, err = cli("cluster", "simulated.csv", *extents, "--json")
+    told = json.loads(out)
+    assert status == 0 and len(told["clusters"]) == 16
+    assert [found["members"] for found in told["clusters"]] == [
+        found["members"] for found in known["clusters"]
+    ]
+    assert told["parameters"] == pytest.approx(known["parameters"])
+    assert "range_cell is not given: 0.015 is taken, the step of the points" in err
+    assert "doppler_cell is not given: 0.001 is taken, the step of the points" in err
+
+
+def test_a_cell_wider_than_a_target_is_told(cli, tmp_path):
+    cli("simulate", "range-doppler", "-o", "simulated.csv")
+    extents = ("--range-extent", 0.24, "--doppler-extent", 0.012)
+    _, _, err = cli("cluster", "simulated.csv", *extents, "--set", "range_cell=1")
+    assert "range_cell 1 alone has an extent of 0.816, more than range_extent 0.24" in err
+    assert "doppler_cell 1 " not in err
+
+
+def test_tables_tell_small_sizes_apart(cli, tmp_path):
+    cli("simulate", "range-doppler", "-o", "simulated.csv")
+    status, out, _ = cli(
+        *("cluster", "simulated.csv", "--scan", 0, "--range-extent", 0.24, "--doppler-extent", 0.012)
+    )
+    assert status == 0
+    row = next(line.split() for line in out.splitlines() if line.startswith("0 "))
+    assert row[3:5] == ["42.7027", "-0.18044"] and row[8:11] == ["0.1049", "0.1088", "0.00482"]
+
+
+def test_plots_do_not_replace_their_points(cli, points):
+    before = points.read_text()
+    status, out, err = cli("cluster", points, *EXTENTS, "--csv", points)
+    assert status == 2 and not out and "this is the file of the points" in err
+    assert points.read_text() == before
+
+
 def test_the_dwell_of_the_most_points_is_shown(cli, tmp_path):
     lines = ["scan,dwell,range,doppler,amplitude", "0,10,5,5,1"]
     lines += [f"0,20,{r},{d},1" for r, d in SQUARE]
