@@ -37,11 +37,19 @@ def cluster(
         Result | None, typer.Option(help="The plot of a cluster; by default the mean, by amplitude.")
     ] = None,
     assignments: SetOption = None,
+    doppler_span: Annotated[
+        float | None,
+        typer.Option(metavar="SPAN", help="Unambiguous span of Doppler, which then is a circle."),
+    ] = None,
     scan: Annotated[int | None, typer.Option(min=0, help="Use the points of this scan only.")] = None,
     as_json: JsonOption = False,
     csv: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the plots as CSV; - prints them instead.")
     ] = None,
+    with_places: Annotated[
+        bool,
+        typer.Option("--xy", help="Tell x and y of the plots: dwell is the azimuth in °, from north."),
+    ] = False,
     plot: Annotated[bool, typer.Option("--plot", help="Draw a scan's points, ellipses and plots.")] = False,
     with_steps: Annotated[bool, typer.Option("--steps", help="Tell the splits of a scan, too.")] = False,
 ) -> None:
@@ -75,10 +83,10 @@ def cluster(
     recording = parse_points(read_text(points), str(points), scan)
     parameters, assumed = with_cells(parameters, recording)
     announce_compilation()
-    found = cluster_recording(recording, parameters)
+    found = cluster_recording(recording, parameters, doppler_span)
     for note in (*notes, *assumed):
         tell(note)
-    told = document(found, with_steps)
+    told = document(found, with_steps, with_places)
     if csv is not None:
         text = csv_text(plot_rows(told))
         if printed:

@@ -160,7 +160,7 @@ class ClusterPlane(Chart):
         self.zoom(KEY_ZOOM**steps, x, y)
 
     def action_close_up(self) -> None:
-        """Fill the plane with the set under consideration, or the chosen cluster; if it is filled, fit all."""
+        """Fill the plane with the set under consideration, or the chosen cluster; once more shows all."""
         limits = self._close_up()
         if limits is None or self._limits == limits:
             self.action_fit()

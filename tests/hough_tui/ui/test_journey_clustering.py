@@ -82,7 +82,8 @@ def test_a_key_fills_the_plane_with_the_set_or_the_cluster_and_takes_it_back(dri
         assert plane.limits == everything
         await user.press("escape", "t", "t", "z")
         ellipse = plane.scene.ellipses[1]
-        assert plane.cluster == 1 and plane.limits.holds(ellipse[:, 0], ellipse[:, 1]).all()
+        assert plane.cluster == 1
+        assert plane.limits.holds(ellipse[:, 0], ellipse[:, 1]).all()
         assert plane.limits != everything
         await user.press("z")
         assert plane.limits == everything
