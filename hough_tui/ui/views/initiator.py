@@ -120,6 +120,14 @@ class InitiatorView(Widget):
         """Put as much side by side as there is room for."""
         self._arrange()
 
+    def on_hide(self) -> None:
+        """Let the view that is seen instead have the processor."""
+        self.query_one(PredictionPanel).pause()
+
+    def on_show(self) -> None:
+        """Go on with what was held back."""
+        self.query_one(PredictionPanel).resume()
+
     def watch_panel(self) -> None:
         """Show the form or the prediction where there is room for one only."""
         self._arrange()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import work
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from hough_tui.ui.messages import TrialOpened
 
 DEBOUNCE = 0.03
-"""Seconds without a further change before a trial is worked out anew."""
+"""Seconds from one change to the next within which they count as one, and the last of them is shown."""
 
 WIDE = 88
 """Columns from which the parts of a panel stand side by side."""
@@ -76,6 +77,7 @@ class LookView(Widget):
         self._opened: TrialOpened | None = None
         self._is_double = False
         self._timer: Any = None
+        self._asked_at = -DEBOUNCE
 
     def compose(self) -> ComposeResult:
         """Lay out one panel; a second one joins it where two initiators are compared."""
@@ -182,10 +184,14 @@ class LookView(Widget):
     # Working it out
 
     def _ask(self) -> None:
-        """Work the trial out, once nothing more has changed for a moment."""
+        """Work the trial out at once; while changes follow each other, when the last of them has come."""
+        before, self._asked_at = self._asked_at, time.monotonic()
         if self._timer is not None:
             self._timer.stop()
-        self._timer = self.set_timer(DEBOUNCE, self._begin)
+        if self._asked_at - before >= DEBOUNCE:
+            self._begin()
+        else:
+            self._timer = self.set_timer(DEBOUNCE, self._begin)
 
     def _begin(self) -> None:
         if self._given is None:

@@ -149,7 +149,12 @@ class LookPanel(Widget):
         if seen.plane_votes is not None:
             for index, votes in enumerate(self.query(PairVotes)):
                 votes.show(votes_scene(seen, index))
-        self.query_one(TrackGrid).show(seen)
+        # A table takes longer to draw than plane and accumulator together, so these come first.
+        self.call_after_refresh(self._list_tracks, seen)
+
+    def _list_tracks(self, seen: TrialLook) -> None:
+        if seen is self._seen:
+            self.query_one(TrackGrid).show(seen)
 
     def _show_planes(self, scenario: Scenario, scene: Callable[[tuple[int, int]], PlaneScene]) -> None:
         self._is_in_space = scenario.dimensions == 3

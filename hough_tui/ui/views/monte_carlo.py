@@ -51,11 +51,6 @@ class MonteCarloView(Widget):
     MonteCarloView Hint { height: 1fr; content-align: center middle; text-align: center; padding: 0 4;
         color: $text-muted; }
     MonteCarloView Hint:focus { color: $foreground; }
-    MonteCarloView.-empty RatePanel { display: none; }
-    MonteCarloView.-filled Hint { display: none; }
-    MonteCarloView ExperimentForm { display: none; }
-    MonteCarloView.-editing ExperimentForm { display: block; }
-    MonteCarloView.-editing Hint, MonteCarloView.-editing RatePanel { display: none; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("r", "run", "Run", id="monte-carlo.run", show=False),
@@ -93,7 +88,8 @@ class MonteCarloView(Widget):
             self.name, self.problem = name, problem
 
     def __init__(self) -> None:
-        super().__init__(classes="-empty")
+        super().__init__()
+        self._is_filled = self._is_editing = False
         self._given: ScenarioSet | None = None
         self._added = ""
         self._reason: str | None = None
@@ -115,11 +111,19 @@ class MonteCarloView(Widget):
 
     def on_mount(self) -> None:
         """Prepare to look at the progress of a run."""
+        self._arrange()
         self._timer = self.set_interval(1 / LOOKS, self._look, pause=True)
 
     def on_unmount(self) -> None:
         """Leave nothing running."""
         self.stop_work()
+
+    def _arrange(self) -> None:
+        """Show the form, the rates or the hint."""
+        # Not by classes of the view: all that stands in it would have its style worked out anew.
+        self.query_one(ExperimentForm).display = self._is_editing
+        self.query_one(RatePanel).display = self._is_filled and not self._is_editing
+        self.query_one(Hint).display = not self._is_filled and not self._is_editing
 
     # What the application says
 
@@ -144,12 +148,12 @@ class MonteCarloView(Widget):
 
     def take_focus(self) -> None:
         """Put the focus where the keys of the view work."""
-        if self.has_class("-editing"):
+        if self._is_editing:
             self.query_one(ExperimentForm).take_focus()
-        elif self.has_class("-empty"):
-            self.query_one(Hint).focus()
-        else:
+        elif self._is_filled:
             self.query_one(RatePanel).take_focus()
+        else:
+            self.query_one(Hint).focus()
 
     def stop_work(self) -> None:
         """Stop the run, since the application ends."""
@@ -224,7 +228,9 @@ class MonteCarloView(Widget):
     def _start(self, live: LiveRun) -> None:
         self._live, self._pace = live, Pace(live.job.plan.trials)
         is_focused = bool(self.query("Hint:focus, ExperimentForm:focus-within"))
-        self.set_classes("-filled")  # and no form any more: whoever runs wants to see the rates
+        # And no form any more: whoever runs wants to see the rates.
+        self._is_filled, self._is_editing = True, False
+        self._arrange()
         self.query_one(RatePanel).show(live)
         if is_focused:
             self.call_after_refresh(self.take_focus)
@@ -288,7 +294,8 @@ class MonteCarloView(Widget):
 
     def action_edit(self) -> None:
         """Show the form of the experiment in place of the rates, or the rates again."""
-        self.set_class(not self.has_class("-editing"), "-editing")
+        self._is_editing = not self._is_editing
+        self._arrange()
         self.take_focus()
 
     def refuse(self, found: Sequence[Problem]) -> None:

@@ -180,7 +180,9 @@ class Chart(Widget, can_focus=True):
         if not self._is_stale:
             return
         if not self.size.area:
+            # It is not on the screen. When it gets there, lines kept from before must not be taken.
             self._is_stale, self._drawn_for = False, None
+            self.refresh()
             return
         before = self._lines
         self._draw()

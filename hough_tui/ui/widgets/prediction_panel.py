@@ -80,6 +80,7 @@ class PredictionPanel(VerticalScroll, can_focus=False, inherit_bindings=False):
         self._advised: PredictionPanel.Advised | None = None
         self._wanted_advice: Asked | None = None
         self._timer: Any = None
+        self._is_paused = self._is_owed = False
 
     def compose(self) -> ComposeResult:
         """Lay out the picture above the figures and the words."""
@@ -107,6 +108,16 @@ class PredictionPanel(VerticalScroll, can_focus=False, inherit_bindings=False):
         if self._timer is not None:
             self._timer.stop()
         self._timer = self.set_timer(DEBOUNCE, self._begin)
+
+    def pause(self) -> None:
+        """Predict nothing more until somebody looks again: it would only delay what is looked at."""
+        self._is_paused = True
+
+    def resume(self) -> None:
+        """Predict again, and first what was asked meanwhile."""
+        self._is_paused = False
+        if self._is_owed:
+            self._begin()
 
     @property
     def is_up_to_date(self) -> bool:
@@ -146,7 +157,8 @@ class PredictionPanel(VerticalScroll, can_focus=False, inherit_bindings=False):
 
     def _begin(self) -> None:
         asked = self._asked
-        if asked is None:
+        self._is_owed = self._is_paused
+        if asked is None or self._is_paused:
             return
         self._predict(asked)
         if not self.is_up_to_date and not self._is_wanted(asked):

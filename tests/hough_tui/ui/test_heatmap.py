@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from rich.console import Console
 from textual.app import App
+from textual.containers import Container
+from textual.widgets import ContentSwitcher
 
 from algorithms.hough.grid import Grid
 from algorithms.hough.voting import accumulate
@@ -363,6 +365,39 @@ def test_many_changes_at_once_are_drawn_once():
 
 def screen_lines(app):
     return [strip.text for strip in app.screen._compositor.render_strips()]
+
+
+def test_what_changes_while_it_is_hidden_is_seen_when_it_comes_back():
+    class Pages(App[None]):
+        # A chart that loses the focus as it is hidden would be painted anew for that alone.
+        AUTO_FOCUS = None
+
+        def compose(self):
+            with ContentSwitcher(initial="shown"):
+                with Container(id="shown"):
+                    yield Heatmap()
+                yield Container(id="other")
+
+    async def work():
+        app = Pages()
+        async with app.run_test(size=(120, 40)) as pilot:
+            heatmap, pages = app.query_one(Heatmap), app.query_one(ContentSwitcher)
+            heatmap.show(scene(report()))
+            await pilot.pause()
+            before = screen_lines(app)
+            pages.current = "other"
+            await pilot.pause()
+            heatmap.show(scene(report(40)))
+            await pilot.pause()
+            pages.current = "shown"
+            await pilot.pause()
+            after = screen_lines(app)
+            assert after != before
+            heatmap.move_cursor(3, 700)
+            await pilot.pause()
+            assert screen_lines(app) != after
+
+    asyncio.run(work())
 
 
 def test_another_quantisation_keeps_the_view_and_the_cursor_where_they_are():
