@@ -64,7 +64,7 @@ class ClusteringView(Widget):
         "box of its extents where these are judged, and a dashed line where it is split. Escape shows the "
         "clusters again. ] and [ take other draws, also Ctrl+N and Ctrl+B; i goes to the next clustering, "
         "s or F10 to the next scene, b puts two clusterings side by side. In the plane n goes from point to "
-        "point, t from cluster to cluster; + - 0 zoom.\n\n"
+        "point, t from cluster to cluster; + - 0 zoom, z to the set or the cluster.\n\n"
         "F9 or v goes on to the forms of the clustering and of the scene; every edit is seen at once. a "
         "adds a scene or a clustering. y copies the plots, to the clipboard and to a file. How often a "
         "clustering counts right is the matter of an experiment of kind `clustering`, which Monte Carlo "
