@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.clustering.circle import cut_open
 from algorithms.clustering.clusters import NONE, Clusters
 from algorithms.clustering.modes import cluster
 from algorithms.clustering.parameters import Clustering
@@ -30,32 +31,6 @@ def _converted_each(measured, sigma):  # type: ignore[no-untyped-def]
     for row in range(len(measured)):
         convert(measured[row], sigma[row], ways, mean[row], covariance[row])
     return mean, covariance
-
-
-@kernel
-def _cut_open(doppler, offsets, cells):  # type: ignore[no-untyped-def]
-    """Return the Doppler cells of each dwell with the circle that they are cut in its widest gap.
-
-    Parameters
-    ----------
-    cells : int64 (dwells,), number of Doppler cells
-    """
-    opened = doppler.copy()
-    for dwell in range(len(offsets) - 1):
-        begin, end = offsets[dwell], offsets[dwell + 1]
-        if end - begin < 2:
-            continue
-        sorted_cells = np.sort(doppler[begin:end])
-        # Where the gap over the fold is the widest, as it mostly is, nothing moves.
-        widest, cut = sorted_cells[0] + cells[dwell] - sorted_cells[-1], -1.0
-        for index in range(1, end - begin):
-            gap = sorted_cells[index] - sorted_cells[index - 1]
-            if gap > widest:
-                widest, cut = gap, sorted_cells[index - 1]
-        for point in range(begin, end):
-            if doppler[point] <= cut:
-                opened[point] += cells[dwell]
-    return opened
 
 
 def dwell_offsets(drawn: PointDraw) -> NDArray[np.int64]:
@@ -105,7 +80,7 @@ def clustered(resolved: ResolvedWorld, drawn: PointDraw, parameters: Clustering)
     """
     offsets = dwell_offsets(drawn)
     first = offsets[:-1]
-    opened = _cut_open(drawn.doppler, offsets, resolved.doppler_cells[drawn.sensor[first]])
+    opened = cut_open(drawn.doppler, offsets, resolved.doppler_cells[drawn.sensor[first]])
     clusters = cluster(Points.of(drawn.range, opened, drawn.amplitude, offsets), parameters)
     targets = len(resolved.counts)
     members = clusters.label != NONE

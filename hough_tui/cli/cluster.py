@@ -37,11 +37,19 @@ def cluster(
         Result | None, typer.Option(help="The plot of a cluster; by default the mean, by amplitude.")
     ] = None,
     assignments: SetOption = None,
+    doppler_span: Annotated[
+        float | None,
+        typer.Option(metavar="SPAN", help="Unambiguous span of Doppler, which then is a circle."),
+    ] = None,
     scan: Annotated[int | None, typer.Option(min=0, help="Use the points of this scan only.")] = None,
     as_json: JsonOption = False,
     csv: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the plots as CSV; - prints them instead.")
     ] = None,
+    with_places: Annotated[
+        bool,
+        typer.Option("--xy", help="Tell x and y of the plots: dwell is the azimuth in °, from north."),
+    ] = False,
     plot: Annotated[bool, typer.Option("--plot", help="Draw a scan's points, ellipses and plots.")] = False,
     with_steps: Annotated[bool, typer.Option("--steps", help="Tell the splits of a scan, too.")] = False,
 ) -> None:
@@ -50,12 +58,17 @@ def cluster(
     refuse(as_json and plot, "--json prints one document and nothing else: leave out --plot")
     refuse(as_json and printed, "--json and --csv - both print to standard output: leave one of them out")
     refuse(printed and (plot or with_steps), "--csv - prints nothing but CSV: leave out --plot and --steps")
+    refuse(
+        csv is not None and not printed and _is_same_file(Path(csv), points),
+        f"--csv {csv}: this is the file of the points, which the plots would replace; give another name",
+    )
     from hough_tui.experiments.clustering import (
         can_be_followed,
         cluster_recording,
         document,
         given_clustering,
         plot_rows,
+        with_cells,
     )
     from hough_tui.reports.clusters import cluster_table, step_table
     from hough_tui.reports.documents import csv_text, json_text
@@ -68,11 +81,12 @@ def cluster(
     )
     refuse(with_steps and not can_be_followed(parameters), f"--steps: mode {mode} splits nothing")
     recording = parse_points(read_text(points), str(points), scan)
+    parameters, assumed = with_cells(parameters, recording)
     announce_compilation()
-    found = cluster_recording(recording, parameters)
-    for note in notes:
+    found = cluster_recording(recording, parameters, doppler_span)
+    for note in (*notes, *assumed):
         tell(note)
-    told = document(found, with_steps)
+    told = document(found, with_steps, with_places)
     if csv is not None:
         text = csv_text(plot_rows(told))
         if printed:
@@ -93,6 +107,10 @@ def cluster(
         print_renderables(step_table(told, width=output_width(), **shown))
     if plot:
         print_plane(found)
+
+
+def _is_same_file(one: Path, other: Path) -> bool:
+    return one.exists() and other.exists() and one.samefile(other)
 
 
 def print_plane(found: Any) -> None:

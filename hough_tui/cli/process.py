@@ -91,12 +91,13 @@ class EndedError(KeyboardInterrupt):
 
 def finish(job: Job, description: str) -> None:
     """Wait for a job with a progress bar on standard error; end it in order where the process must end."""
-    from hough_tui.reports.progress import ProgressBar
-
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, EndedError)
     progress = job.progress
     try:
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, EndedError)
+        # The job is at work already: whatever interrupts from here on must end it.
+        from hough_tui.reports.progress import ProgressBar
+
         with ProgressBar(description) as bar:
             while not job.wait(0.1):
                 bar.update(

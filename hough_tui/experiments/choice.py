@@ -33,6 +33,12 @@ def chosen_scenario(given: ScenarioSet, name: str | None) -> Scenario:
     return given.scenario(name)
 
 
+def known_stages(given: ScenarioSet) -> dict[str, ClusteringEntry | WithoutClustering]:
+    """Return by name what can stand between the points of a scenario and initiators, clusterings last."""
+    able = {entry.name: entry for entry in given.clusterings if entry.mode != "k-means"}
+    return {**WITHOUT_CLUSTERING, **able}
+
+
 def chosen_clustering(
     given: ScenarioSet, scenario: Scenario, name: str | None
 ) -> ClusteringEntry | WithoutClustering | None:
@@ -47,8 +53,7 @@ def chosen_clustering(
         return None
     if not scenario.is_resolved:
         raise RequestError(f"--clustering {name}: {scenario.name} has no sensor of high resolution")
-    able = {entry.name: entry for entry in given.clusterings if entry.mode != "k-means"}
-    known: dict[str, ClusteringEntry | WithoutClustering] = {**WITHOUT_CLUSTERING, **able}
+    known = known_stages(given)
     if name not in known:
         raise RequestError(f"--clustering: {unknown(name, list(known), 'clustering')}")
     return known[name]

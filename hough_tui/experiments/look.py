@@ -36,12 +36,14 @@ class Picture:
     ----------
     scenario, seed, trial : which draw
     drawn : its plots, with what caused each
+    stage : how points became plots, of a scenario whose sensors give points; None: every point is a plot
     """
 
     scenario: Scenario
     seed: int
     trial: int
     drawn: Draw
+    stage: Stage = None
 
     @property
     def plots(self) -> Plots:
@@ -93,7 +95,7 @@ def picture(scenario: Scenario, seed: int, trial: int, stage: Stage = None) -> P
     ----------
     stage : how points become plots, of a scenario whose sensors give points; None: every point is a plot
     """
-    return Picture(scenario, seed, trial, plots_of(scenario, seed, trial, stage))
+    return Picture(scenario, seed, trial, plots_of(scenario, seed, trial, stage), stage)
 
 
 def look(

@@ -32,5 +32,6 @@ def cell_words(scenario: Scenario) -> str:
     return (
         f"points in cells of {cells.range_cell:g} {unit} and {cells.doppler_cell:g} {unit}/s, from "
         f"{-0.5 * cells.span:g} to {0.5 * cells.span:g} {unit}/s; for cluster: --set "
-        f"range_cell={cells.range_cell:g} --set doppler_cell={cells.doppler_cell:g}"
+        f"range_cell={cells.range_cell:g} --set doppler_cell={cells.doppler_cell:g} "
+        f"--doppler-span {cells.span:g}"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -43,6 +44,7 @@ def cluster_sheet(document: Document) -> Sheet:
     found = list(document.get("clusters") or ())
     ellipses = [cluster.get("ellipse") or {} for cluster in found]
     widths = [ellipse.get("widths") or (None, None) for ellipse in ellipses]
+    in_range, in_doppler = _decimals(document, "range", widths), _decimals(document, "doppler", widths)
     dwells = []
     if any("dwell" in cluster for cluster in found):
         dwells.append(Column("dwell", aligned([as_given(cluster.get("dwell")) for cluster in found])))
@@ -50,14 +52,14 @@ def cluster_sheet(document: Document) -> Sheet:
         Column("#", tuple(str(index) for index in range(len(found)))),
         Column("scan", tuple(str(cluster.get("scan")) for cluster in found)),
         *dwells,
-        Column("range", _sizes([cluster.get("range") for cluster in found])),
-        Column("Doppler", _sizes([cluster.get("doppler") for cluster in found])),
+        Column("range", _sizes([cluster.get("range") for cluster in found], in_range)),
+        Column("Doppler", _sizes([cluster.get("doppler") for cluster in found], in_doppler)),
         Column("amplitude", aligned([significant(number(cluster.get("amplitude"))) for cluster in found])),
         Column("points", tuple(str(len(cluster.get("members") or ())) for cluster in found)),
         Column("kept", tuple(str(len(cluster.get("kept") or ())) for cluster in found), rank=10),
-        Column("chord", _sizes([ellipse.get("chord") for ellipse in ellipses]), rank=30),
-        Column("extent in\nrange", _sizes([width[0] for width in widths]), rank=20),
-        Column("extent in\nDoppler", _sizes([width[1] for width in widths]), rank=20),
+        Column("chord", _sizes([ellipse.get("chord") for ellipse in ellipses], in_range), rank=30),
+        Column("extent in\nrange", _sizes([width[0] for width in widths], in_range), rank=20),
+        Column("extent in\nDoppler", _sizes([width[1] for width in widths], in_doppler), rank=20),
         Column("angle\n°", _sizes([ellipse.get("angle_deg") for ellipse in ellipses], 1), rank=40),
     )
     count = f"{len(found):,} cluster{'' if len(found) == 1 else 's'}"
@@ -98,7 +100,17 @@ def verdict_words(step: Document) -> str:
     return f"cluster {step['cluster']}" if step["cluster"] is not None else "too few points"
 
 
-def _sizes(values: Sequence[object], decimals: int = 2) -> tuple[str, ...]:
+def _decimals(document: Document, axis: str, widths: Sequence[Sequence[object]]) -> int:
+    """Return how many decimals tell sizes along an axis apart that differ by a thousandth of a target's."""
+    extent = number((document.get("parameters") or {}).get(f"{axis}_extent"))
+    if extent is None:
+        # Of a mode that does not look at this axis, the widest cluster stands for a target.
+        own = (number(width[list(AXES).index(axis)]) for width in widths)
+        extent = max((width for width in own if width is not None), default=0.0)
+    return min(12, max(0, 3 - math.floor(math.log10(extent)))) if extent > 0.0 else 2
+
+
+def _sizes(values: Sequence[object], decimals: int) -> tuple[str, ...]:
     return tuple(fixed(number(value), decimals) for value in values)
 
 

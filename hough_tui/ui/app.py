@@ -38,6 +38,9 @@ if TYPE_CHECKING:
 AUTOSAVE_DELAY = 0.8
 """Seconds after a change until the set is kept aside."""
 
+WARM_AT_LATEST = 1.5
+"""Seconds after a set is opened until kernels are loaded, even if it shows no draw for which they are."""
+
 
 class HoughApp(App[None]):
     """Design and judge track initiation."""
@@ -154,6 +157,7 @@ class HoughApp(App[None]):
         self._main.tell_state(None)
         self._main.show_workspace(self.workspace)
         self._unanswered = kept
+        self.set_timer(WARM_AT_LATEST, self._warm_once)
         if kept is not None:
 
             def answer(key: str | None) -> None:
@@ -175,7 +179,7 @@ class HoughApp(App[None]):
 
     @on(SetShown)
     def _warm_once(self) -> None:
-        # Not sooner: what loads in the background would take its time from the first form.
+        # Not sooner: what loads in the background would take its time from the first form and the first draw.
         if not self._is_warming:
             self._is_warming = True
             # No worker of Textual's: the application would wait for its end, and a compilation takes long.

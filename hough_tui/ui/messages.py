@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class SetShown(Message):
-    """The set that was opened is on the screen."""
+    """A draw of the set is on the screen, beside its forms."""
 
 
 class Preparing(Message):

@@ -213,6 +213,9 @@ REFUSED = [
     ((*EXTENTS, "--json", "--plot"), "--json prints one document and nothing else"),
     ((*EXTENTS, "--json", "--csv", "-"), "--json and --csv - both print to standard output"),
     ((*EXTENTS, "--csv", "-", "--plot"), "--csv - prints nothing but CSV"),
+    ((*EXTENTS, "--xy"), "--xy: the file has no column 'dwell'"),
+    ((*EXTENTS, "--doppler-span", 0), "--doppler-span: 0.0 is given; it must be a number greater than 0"),
+    ((*EXTENTS, "--doppler-span", 20), "must lie from -10 to 10, or from 0 to 20"),
 ]
 
 
@@ -271,6 +274,92 @@ def test_simulated_points_are_clustered_by_dwell_as_simulate_does_it(cli, tmp_pa
         status, out, _ = cli("initiate", name, "--like", "range-doppler", "--json")
         assert status == 0
         assert json.loads(out)["scans"] == 8
+
+
+def test_cells_that_are_not_given_are_those_of_the_points(cli, tmp_path):
+    cli("simulate", "range-doppler", "-o", "simulated.csv")
+    extents = ("--range-extent", 0.24, "--doppler-extent", 0.012)
+    given = ("--set", "range_cell=0.015", "--set", "doppler_cell=0.001")
+    _, out, _ = cli("cluster", "simulated.csv", *extents, *given, "--json")
+    known = json.loads(out)
+    status, out, err = cli("cluster", "simulated.csv", *extents, "--json")
+    told = json.loads(out)
+    assert status == 0
+    assert len(told["clusters"]) == 16
+    assert [found["members"] for found in told["clusters"]] == [
+        found["members"] for found in known["clusters"]
+    ]
+    assert told["parameters"] == pytest.approx(known["parameters"])
+    assert "range_cell is not given: 0.015 is taken, the step of the points" in err
+    assert "doppler_cell is not given: 0.001 is taken, the step of the points" in err
+
+
+def test_a_cell_wider_than_a_target_is_told(cli, tmp_path):
+    cli("simulate", "range-doppler", "-o", "simulated.csv")
+    extents = ("--range-extent", 0.24, "--doppler-extent", 0.012)
+    _, _, err = cli("cluster", "simulated.csv", *extents, "--set", "range_cell=1")
+    assert "range_cell 1 alone has an extent of 0.816, more than range_extent 0.24" in err
+    assert "doppler_cell 1 " not in err
+
+
+def test_tables_tell_small_sizes_apart(cli, tmp_path):
+    cli("simulate", "range-doppler", "-o", "simulated.csv")
+    status, out, _ = cli(
+        *("cluster", "simulated.csv", "--scan", 0, "--range-extent", 0.24, "--doppler-extent", 0.012)
+    )
+    assert status == 0
+    row = next(line.split() for line in out.splitlines() if line.startswith("0 "))
+    assert row[3:5] == ["42.7027", "-0.18044"]
+    assert row[8:11] == ["0.1049", "0.1088", "0.00482"]
+
+
+@pytest.mark.parametrize("low", [-50, 0], ids=["about zero", "from zero on"])
+def test_a_target_at_the_fold_of_doppler_is_one(cli, tmp_path, low):
+    # Two by two points about the fold, and four more on the other side of the circle.
+    dopplers = [low, low + 2, low + 98, low + 100 - 1e-9, *(low + d for d in (48, 50, 52, 54))]
+    rows = [f"{10 + index % 2},{doppler},1" for index, doppler in enumerate(dopplers)]
+    (tmp_path / "fold.csv").write_text("\n".join(["range,doppler,amplitude", *rows]) + "\n")
+    status, out, err = cli("cluster", "fold.csv", *EXTENTS, "--doppler-span", 100, "--json")
+    assert status == 0, err
+    found = json.loads(out)["clusters"]
+    assert sorted(cluster["members"] for cluster in found) == [[0, 1, 2, 3], [4, 5, 6, 7]]
+    at_fold = next(cluster for cluster in found if 0 in cluster["members"])
+    assert min(abs(at_fold["doppler"] - low), abs(at_fold["doppler"] - low - 100)) < 1e-6
+    assert low <= at_fold["doppler"] <= low + 100
+    _, out, _ = cli("cluster", "fold.csv", *EXTENTS, "--json")
+    assert [cluster["members"] for cluster in json.loads(out)["clusters"]] == [[4, 5, 6, 7]]
+
+
+def test_plots_with_their_places_are_what_initiators_take(cli, tmp_path):
+    cli("simulate", "range-doppler", "-o", "simulated.csv")
+    extents = ("--range-extent", 0.24, "--doppler-extent", 0.012)
+    status, _, err = cli("cluster", "simulated.csv", *extents, "--xy", "--csv", "plots.csv")
+    assert status == 0, err
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "plots.csv").read_text())))
+    for row in rows:
+        x, y = float(row["x"]), float(row["y"])
+        assert math.hypot(x, y) == pytest.approx(float(row["range"]))
+        assert math.degrees(math.atan2(x, y)) == pytest.approx(float(row["dwell"]))
+    # Near the first target's path, from (-15, 40) by (0.25, -0.1) a second: a beam is 0.37 km wide there.
+    first = [row for row in rows if float(row["dwell"]) < 0.0]
+    for row in first:
+        t = 4.0 * int(row["scan"])
+        assert abs(float(row["x"]) - (-15.0 + 0.25 * t)) < 0.8
+        assert abs(float(row["y"]) - (40.0 - 0.1 * t)) < 0.8
+    status, out, err = cli("initiate", "plots.csv", "--like", "range-doppler", "--json")
+    assert status == 0, err
+    told = json.loads(out)
+    assert told["plots"] == 16
+    assert max(len(track["plots"]) for track in told["tracks"]) == 8
+
+
+def test_plots_do_not_replace_their_points(cli, points):
+    before = points.read_text()
+    status, out, err = cli("cluster", points, *EXTENTS, "--csv", points)
+    assert status == 2
+    assert not out
+    assert "this is the file of the points" in err
+    assert points.read_text() == before
 
 
 def test_the_dwell_of_the_most_points_is_shown(cli, tmp_path):

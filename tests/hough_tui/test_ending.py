@@ -24,13 +24,18 @@ def test_finished_trials_survive_an_ending_signal(number, status, tmp_path):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        # What runs in the background may have been started deaf to it.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     # Each thread's time stands in the process's own: it is at work once that goes on.
     deadline = time.monotonic() + 60
     while _processor_seconds(process.pid) < 3.0 and time.monotonic() < deadline:
         time.sleep(0.1)
     process.send_signal(number)
-    out, err = process.communicate(timeout=60)
+    try:
+        out, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
     assert process.returncode == status
     assert "Traceback" not in err
     assert "finished trials only" in err

@@ -11,7 +11,6 @@ from textual.binding import Binding, BindingType
 from textual.containers import Container, Horizontal
 from textual.widgets import TabbedContent, TabPane
 
-from hough_tui.ui.messages import SetShown
 from hough_tui.ui.screens.attentive import AttentiveScreen
 from hough_tui.ui.widgets.key_line import KeyLine
 from hough_tui.ui.widgets.status_line import StatusLine
@@ -114,7 +113,6 @@ class MainScreen(AttentiveScreen):
         if not self._workspace.given.scenarios:
             self.query_one(TabbedContent).active = "clustering"
         await self._show_tab(self.query_one(TabbedContent).active)
-        self.call_after_refresh(self.post_message, SetShown())
 
     def show_set(self, workspace: Workspace) -> None:
         """Show the set as it is now: at once in the view that is seen, in the others when they are."""

@@ -67,7 +67,10 @@ class ClusterPanel(Widget):
 
     def compose(self) -> ComposeResult:
         """Lay out the plane and the steps below what they say."""
-        yield Caption()
+        caption = Caption()
+        # The first draw waits until the kernels are compiled.
+        caption.tell("Drawing the scene …")
+        yield caption
         yield Caption(id="verdict")
         with Container():
             with Vertical(id="plane-side"):

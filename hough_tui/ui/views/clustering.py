@@ -18,7 +18,7 @@ from algorithms.clustering.parameters import MODES, Clustering
 from algorithms.errors import RequestError
 from algorithms.parameters import Problem
 from hough_tui.experiments.scene_look import ClusterLook, cluster_look, scene_picture, scene_seed
-from hough_tui.ui.messages import ElementAdded, FieldEdited
+from hough_tui.ui.messages import ElementAdded, FieldEdited, SetShown
 from hough_tui.ui.naming import free_name
 from hough_tui.ui.screens.choice import Choice
 from hough_tui.ui.views.cluster_panel import ClusterPanel
@@ -64,7 +64,7 @@ class ClusteringView(Widget):
         "box of its extents where these are judged, and a dashed line where it is split. Escape shows the "
         "clusters again. ] and [ take other draws, also Ctrl+N and Ctrl+B; i goes to the next clustering, "
         "s or F10 to the next scene, b puts two clusterings side by side. In the plane n goes from point to "
-        "point, t from cluster to cluster; + - 0 zoom.\n\n"
+        "point, t from cluster to cluster; + - 0 zoom, z to the set or the cluster.\n\n"
         "F9 or v goes on to the forms of the clustering and of the scene; every edit is seen at once. a "
         "adds a scene or a clustering. y copies the plots, to the clipboard and to a file. How often a "
         "clustering counts right is the matter of an experiment of kind `clustering`, which Monte Carlo "
@@ -392,3 +392,4 @@ class ClusteringView(Widget):
                 panel.refuse(seen)
             else:
                 panel.show(seen, swept)
+        self.post_message(SetShown())

@@ -14,11 +14,11 @@ from textual.worker import get_current_worker
 
 from algorithms.errors import RequestError
 from algorithms.parameters import Parameters
-from hough_tui.experiments.choice import seed_of
+from hough_tui.experiments.choice import known_stages, seed_of
 from hough_tui.experiments.look import Picture, TrialLook, look, picture
 from hough_tui.experiments.plot_sources import Stage
 from hough_tui.ui.views.look_panel import LookPanel
-from scenarios.entries import InitiatorEntry
+from scenarios.entries import ClusteringEntry, InitiatorEntry
 from scenarios.experiments import MatchCriterion
 from scenarios.model import Scenario, ScenarioSet
 
@@ -50,7 +50,9 @@ class LookView(Widget):
         "the chosen track; z goes from one to the next. Of an initiator whose pairs of plots vote, the votes "
         "of each plane stand in place of the accumulator: d across, the direction θ down, larger where a "
         "window confirms them. n goes from vote to vote and lights up its two plots; choosing a track lights "
-        "up its votes, choosing a plot those that it has a part in."
+        "up its votes, choosing a plot those that it has a part in.\n\n"
+        "Sensors of high resolution give points. o goes through the ways in which they become plots: the "
+        "clusterings of the set, every point a plot, and each target seen as one point."
     )
     DEFAULT_CSS = """
     LookView { layout: vertical; height: 1fr; }
@@ -62,6 +64,8 @@ class LookView(Widget):
         Binding("i", "initiator(1)", "Next initiator", id="look.next-initiator", show=False),
         Binding("I", "initiator(-1)", "Previous initiator", id="look.previous-initiator", show=False),
         Binding("s", "scenario", "Next scenario", id="look.next-scenario", show=False),
+        Binding("o", "stage(1)", "Cluster points otherwise", id="look.next-clustering", show=False),
+        Binding("O", "stage(-1)", "As clustered before", id="look.previous-clustering", show=False),
         Binding("b", "side_by_side", "Two initiators side by side", id="look.side-by-side", show=False),
     ]
 
@@ -69,6 +73,7 @@ class LookView(Widget):
         super().__init__()
         self._given: ScenarioSet | None = None
         self._scenario, self._entry, self._trial = 0, 0, 0
+        self._stage_name: str | None = None
         self._opened: TrialOpened | None = None
         self._is_double = False
         self._timer: Any = None
@@ -130,6 +135,23 @@ class LookView(Widget):
             self._opened = None
             self._ask()
 
+    def action_stage(self, step: int) -> None:
+        """Make plots of the points in the next way; a trial of a run is then one of the set again."""
+        if self._given is None or not self._given.scenarios:
+            return
+        if not self._given.scenarios[self._scenario].is_resolved:
+            self.notify("No sensor of the scenario gives points that could be clustered", markup=False)
+            return
+        names = list(stages(self._given))
+        if self._opened is not None:
+            opened = self._opened.cell.clustering
+            here = "none" if opened is None else opened.name
+        else:
+            here = self._stage_name or names[0]
+        place = names.index(here) if here in names else 0
+        self._stage_name, self._opened = names[(place + step) % len(names)], None
+        self._ask()
+
     def action_scenario(self) -> None:
         """Look at the next scenario."""
         if self._given is not None and self._given.scenarios:
@@ -187,6 +209,9 @@ class LookView(Widget):
             scenario, swept = self._given.scenarios[self._scenario], None
             seed, criterion = seed_of(self._given, scenario), criterion_of(self._given, scenario)
             chosen, stage = [(self._given.initiators[self._entry], None)], None
+            if scenario.is_resolved:
+                ways = stages(self._given)
+                stage = ways.get(self._stage_name or "", next(iter(ways.values())))
         if self._is_double:
             chosen.append((self._given.initiators[(self._entry + 1) % len(self._given.initiators)], None))
         self._work(scenario, seed, self._trial, chosen, criterion, swept, stage)
@@ -204,7 +229,13 @@ class LookView(Widget):
     ) -> None:
         """Draw the trial and let the initiators work on it."""
         worker = get_current_worker()
-        drawn = picture(scenario, seed, trial, stage)
+        try:
+            drawn = picture(scenario, seed, trial, stage)
+        except RequestError as error:
+            # A way to cluster may need what is not installed.
+            if not worker.is_cancelled:
+                self.app.call_from_thread(self.query(LookPanel).first().refuse, str(error))
+            return
         found: list[TrialLook | str] = []
         for entry, parameters in chosen:
             if worker.is_cancelled:
@@ -225,6 +256,13 @@ class LookView(Widget):
                 panel.refuse(seen, drawn)
             else:
                 panel.show(seen, swept)
+
+
+def stages(given: ScenarioSet) -> dict[str, Stage]:
+    """Return by name how the points of a scenario can become plots, the clusterings of the set first."""
+    known = known_stages(given)
+    clusterings = {name: stage for name, stage in known.items() if isinstance(stage, ClusteringEntry)}
+    return {**clusterings, "none": None, "ideal": known["ideal"]}
 
 
 def criterion_of(given: ScenarioSet, scenario: Scenario) -> MatchCriterion | None:

@@ -354,6 +354,10 @@ def caption(seen: TrialLook, swept: Mapping[str, int | float] | None = None) -> 
     if swept is not None:
         values = ", ".join(f"{field_name(key)} {as_given(value)}" for key, value in swept.items())
         parts.append(Part(f"of a run: {values}" if values else "of a run", 1))
+    if seen.picture.scenario.is_resolved:
+        stage = seen.picture.stage
+        words = "every point a plot" if stage is None else f"plots by {stage.name}"
+        parts.append(Part(words, 1))
     if seen.total > len(seen.tracks):
         shown = f"the {len(seen.tracks)} strongest"
         parts.append(Part(f"{shown} are shown", 3, shown))

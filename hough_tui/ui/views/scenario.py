@@ -18,6 +18,7 @@ from hough_tui.experiments.choice import seed_of
 from hough_tui.experiments.look import Picture, picture
 from hough_tui.ui.drawing.shortening import Part
 from hough_tui.ui.forms.model_form import ModelForm
+from hough_tui.ui.messages import SetShown
 from hough_tui.ui.views.trial_scenes import picture_scene
 from hough_tui.ui.widgets.caption import Caption
 from hough_tui.ui.widgets.plane import Plane
@@ -91,7 +92,8 @@ class ScenarioView(Widget):
             self.query_one(Caption).tell("The set has no scenario")
             return
         self.query_one(ModelForm).load(self._scenario, ("scenarios", self._index), unit=self._scenario.unit)
-        self._ask()
+        # The form comes first: the first draw has kernels loaded, which takes the processor from it.
+        self.call_after_refresh(self._ask)
 
     def choose(self, index: int) -> None:
         """Show another scenario of the set."""
@@ -159,3 +161,4 @@ class ScenarioView(Widget):
             Part("F9 form or picture", 2, "F9 turns"),
         )
         self.query_one(Plane).show(picture_scene(drawn))
+        self.post_message(SetShown())

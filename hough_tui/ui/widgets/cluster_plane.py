@@ -37,7 +37,8 @@ EMPTY = ClusterScene(
 class ClusterPlane(Chart):
     """A picture of points and clusters, range to the right and Doppler upwards.
 
-    `n` and `N` step through the points, `t` and `T` through the clusters; a click chooses a point.
+    `n` and `N` step through the points, `t` and `T` through the clusters; a click chooses a point. `z` shows
+    the set under consideration, or the chosen cluster, as large as it fits; once more shows everything.
     """
 
     BINDINGS = [
@@ -48,6 +49,7 @@ class ClusterPlane(Chart):
         Binding("plus,equals_sign", "zoom(1)", "Zoom in", show=False, id="clusters.zoom-in"),
         Binding("minus", "zoom(-1)", "Zoom out", show=False, id="clusters.zoom-out"),
         Binding("0", "fit", "Fit", show=False, id="clusters.fit"),
+        Binding("z", "close_up", "Zoom to the set, or the cluster", show=False, id="clusters.close-up"),
         Binding("n", "next_point(1)", "Next point", show=False, id="clusters.next-point"),
         Binding("N", "next_point(-1)", "Previous point", show=False, id="clusters.previous-point"),
         Binding("t", "next_cluster(1)", "Next cluster", show=False, id="clusters.next-cluster"),
@@ -156,6 +158,32 @@ class ClusterPlane(Chart):
         if chosen is not None and view.limits.holds(*chosen):
             x, y = chosen
         self.zoom(KEY_ZOOM**steps, x, y)
+
+    def action_close_up(self) -> None:
+        """Fill the plane with the set under consideration, or the chosen cluster; once more shows all."""
+        limits = self._close_up()
+        if limits is None or self._limits == limits:
+            self.action_fit()
+        else:
+            self.look_at(limits)
+
+    def _close_up(self) -> Limits | None:
+        """Return what holds the set or the cluster with its ellipse; None where neither is chosen."""
+        scene, step, cluster = self._scene, self._step, self._cluster
+        if step is not None:
+            around = [scene.position[step.members], step.ellipse, step.box]
+        elif cluster is not None:
+            around = [scene.position[scene.members(cluster)], *scene.ellipses[cluster : cluster + 1]]
+        else:
+            return None
+        around = [places for places in around if len(places)]
+        (left, bottom) = np.min([places.min(axis=0) for places in around], axis=0).tolist()
+        (right, top) = np.max([places.max(axis=0) for places in around], axis=0).tolist()
+        # A single point, and one that lies alone on its axis, has room about it.
+        home = self._home
+        x = max(0.01 * (home.right - home.left), 0.05 * (right - left))
+        y = max(0.01 * (home.top - home.bottom), 0.05 * (top - bottom))
+        return Limits(left - x, right + x, bottom - y, top + y)
 
     def action_next_point(self, step: int) -> None:
         points = np.arange(len(self._scene.position)) if self._step is None else self._step.members

@@ -243,7 +243,7 @@ def legend(scene: ClusterScene, colours: Palette, width: int, step: StepScene | 
             (KEPT[0], layers[INNER], int((is_member & scene.kept).sum()), "kept", "kept"),
             (DROPPED[0], layers[OUTER], int((is_member & ~scene.kept).sum()), "beyond the radius", "beyond"),
             (STRAY, layers[STRAYS], int((~is_member).sum()), "in no cluster", "none"),
-            (PLOT, layers[CENTRE], len(scene.plots), "plots", "plots"),
+            (PLOT, layers[CENTRE], len(scene.plots), _many(len(scene.plots), "plot"), "plots"),
         ]
     elif step.axis is not None:
         upper = int(step.is_upper.sum())
@@ -255,8 +255,12 @@ def legend(scene: ClusterScene, colours: Palette, width: int, step: StepScene | 
     else:
         mark, layer = (DROPPED[0], STRAYS) if step.cluster is None else _member(step.cluster)
         entries = [(mark, layers[layer], len(step.members), "in the set", "in it")]
-    entries.append((TRUE, layers[TRUTH], len(scene.truth), "true centres", "true"))
+    entries.append((TRUE, layers[TRUTH], len(scene.truth), _many(len(scene.truth), "true centre"), "true"))
     return _written(entries, ink(colours.muted), width)
+
+
+def _many(count: int, word: str) -> str:
+    return word if count == 1 else f"{word}s"
 
 
 def _member(cluster: int) -> tuple[str, int]:

@@ -25,6 +25,7 @@ from hough_tui.ui.widgets.cluster_scene import (
     TRUE,
     ClusterScene,
     colour_of,
+    legend,
 )
 from scenarios.files import load_set
 from tests.hough_tui.ui.test_plane import at, place, screen_lines, text
@@ -358,3 +359,13 @@ def test_without_colour_nothing_and_something_are_drawn(monkeypatch):
         assert all(red == green == blue for red, green, blue in colours)
 
     play(EMPTY, journey)
+
+
+def test_the_legend_tells_one_plot_from_several():
+    def words(count):
+        places = [(10.0 * index, 50.0) for index in range(count)]
+        scene = sparse(places, [0] * count, plots=places, truth=places)
+        return "".join(part for part, _ in legend(scene, DARK, 200))
+
+    assert words(1) == "● 1 kept   + 1 plot   × 1 true centre"
+    assert words(2) == "● 2 kept   + 2 plots   × 2 true centres"

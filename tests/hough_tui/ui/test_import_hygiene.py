@@ -38,8 +38,25 @@ HoughApp("course-report", read_config())
     assert loaded(program) & HEAVY == set()
 
 
-def test_the_test_of_this_can_fail():
-    assert {"numpy", "numba", "pydantic"} <= loaded("import hough_tui.ui.views.look")
+COMPILER = {"llvmlite", "numba", "scipy"}
+READING = """
+import hough_tui.ui.views.scenario
+from scenarios.files import load_set
+given = load_set("course-report")
+"""
+DRAWING = """
+from hough_tui.experiments.look import picture
+picture(given.scenarios[0], 1, 0)
+"""
+
+
+def test_a_set_is_read_and_its_form_is_made_before_the_compiler_is_loaded():
+    assert loaded(READING) & COMPILER == set()
+
+
+def test_the_tests_of_this_can_fail():
+    found = loaded(READING + DRAWING)
+    assert {"numpy", "pydantic", "numba", "llvmlite"} <= found
 
 
 def imported(source: str) -> set[str]:

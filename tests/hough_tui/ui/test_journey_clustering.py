@@ -1,5 +1,7 @@
 """Clustering: draws of scenes, step by step, the forms beside them, and the way from rates to a trial."""
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -56,6 +58,58 @@ def test_keys_go_through_the_steps_and_back_to_the_clusters(drive, size):
         assert panel.step == len(steps) - 1
 
     drive(journey, SET, size=size)
+
+
+def test_a_key_fills_the_plane_with_the_set_or_the_cluster_and_takes_it_back(drive):
+    async def journey(user):
+        panel = await clustering(user, INTERFERENCE)
+        plane, steps = panel.query_one(ClusterPlane), expected(user, INTERFERENCE).steps
+        everything = plane.limits
+        await user.press("z")
+        assert plane.limits == everything
+        whole = next(index for index, step in enumerate(steps) if step.cluster is not None)
+        await user.press(*"." * (whole + 1), "z")
+        shown = plane.limits
+        for around in (plane.scene.position[steps[whole].points], plane.step.ellipse, plane.step.box):
+            assert shown.holds(around[:, 0], around[:, 1]).all()
+        assert shown.right - shown.left < 0.5 * (everything.right - everything.left)
+        # The next set is shown where the plane is, until it is asked for.
+        await user.press("comma")
+        assert plane.limits == shown
+        await user.press("z")
+        assert plane.limits != shown
+        await user.press("z")
+        assert plane.limits == everything
+        await user.press("escape", "t", "t", "z")
+        ellipse = plane.scene.ellipses[1]
+        assert plane.cluster == 1
+        assert plane.limits.holds(ellipse[:, 0], ellipse[:, 1]).all()
+        assert plane.limits != everything
+        await user.press("z")
+        assert plane.limits == everything
+
+    drive(journey, SET, size=(160, 48))
+
+
+def test_the_first_draw_is_announced_until_it_is_there(drive, monkeypatch):
+    from hough_tui.ui.views import clustering as module
+
+    may_go_on, draw = threading.Event(), module.scene_picture
+
+    def late(*arguments):
+        may_go_on.wait(60)
+        return draw(*arguments)
+
+    async def journey(user):
+        monkeypatch.setattr(module, "scene_picture", late)
+        await user.go("f11")
+        try:
+            await user.sees("Drawing the scene …")
+        finally:
+            may_go_on.set()
+        await user.sees("recommended on same-doppler, trial 0")
+
+    drive(journey, SET, size=(80, 24))
 
 
 def test_the_list_of_steps_is_the_tree_and_choosing_a_line_shows_it(drive):

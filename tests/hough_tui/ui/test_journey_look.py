@@ -214,3 +214,48 @@ def test_the_accumulator_shows_votes_their_deviation_and_weighted_votes(drive):
         assert panel.layer == "votes"
 
     drive(journey, "thesis-five-targets")
+
+
+def test_points_become_plots_in_the_ways_of_the_set(drive):
+    async def journey(user):
+        panel = await look(user)
+        await user.sees("standard on crossing, trial 0", "plots by recommended")
+        assert len(panel._seen.picture.plots) == 16
+        await user.press("o")
+        await user.until(lambda: panel._seen.picture.stage.name == "corrected-patent")
+        await user.sees("plots by corrected-patent")
+        assert len(panel._seen.picture.plots) > 100
+        await user.press("O", "O")
+        await user.until(lambda: panel._seen.picture.stage.name == "ideal")
+        await user.press("O")
+        await user.until(lambda: panel._seen.picture.stage is None)
+        await user.sees("every point a plot")
+        assert len(panel._seen.picture.plots) == 551
+
+    drive(journey, "range-doppler", size=(160, 48))
+
+
+def test_where_no_sensor_gives_points_there_is_nothing_to_cluster(drive):
+    async def journey(user):
+        panel = await look(user)
+        await user.press("o")
+        await user.sees("No sensor of the scenario gives points")
+        assert panel._seen.picture.stage is None
+
+    drive(journey, "course-report", size=(120, 40))
+
+
+def test_a_clustering_that_cannot_be_done_says_why(drive, monkeypatch):
+    from algorithms.errors import RequestError
+    from hough_tui.ui.views import look as module
+
+    def fails(*_):
+        raise RequestError("mode dbscan needs scikit-learn")
+
+    async def journey(user):
+        await look(user)
+        monkeypatch.setattr(module, "picture", fails)
+        await user.press("o")
+        await user.sees("mode dbscan needs scikit-learn")
+
+    drive(journey, "range-doppler", size=(120, 40))
