@@ -1,6 +1,8 @@
 """Settings that all tests share."""
 
 import os
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -13,6 +15,22 @@ settings.load_profile("kernels")
 
 # No test may write among the user's own runs, in whatever process it works.
 os.environ["XDG_DATA_HOME"] = tempfile.mkdtemp(prefix="hough-tui-data-")
+
+
+PARTS = ("warm_plane()", "warm_space(); warming.warm_clustering()")
+"""What has the kernels compiled, in two parts that take about as long."""
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Have two processes compile the kernels, one half each, before each worker would compile them all."""
+    from algorithms.compiled import is_cold
+
+    is_worker = hasattr(session.config, "workerinput")
+    if not is_worker and session.config.getoption("numprocesses", None) and is_cold():
+        program = "from hough_tui.ui import warming; warming."
+        # What fails here fails again in the tests, which tell why.
+        for process in [subprocess.Popen([sys.executable, "-c", program + part]) for part in PARTS]:
+            process.wait()
 
 
 @pytest.fixture

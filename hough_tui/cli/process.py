@@ -77,7 +77,7 @@ def announce_compilation() -> None:
     from algorithms.compiled import is_cold
 
     if is_cold():
-        tell("compiling the kernels, once for this version: up to 20 s")
+        tell("compiling the kernels, once for this version: up to a minute")
 
 
 class EndedError(KeyboardInterrupt):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -180,20 +181,21 @@ class HoughApp(App[None]):
     @on(SetShown)
     def _warm_once(self) -> None:
         # Not sooner: what loads in the background would take its time from the first form and the first draw.
-        if not self._is_warming:
+        if not self._is_warming and self.workspace is not None:
             self._is_warming = True
             # No worker of Textual's: the application would wait for its end, and a compilation takes long.
-            threading.Thread(target=self._warm, name="warm", daemon=True).start()
+            work = partial(self._warm, self.workspace.given)
+            threading.Thread(target=work, name="warm", daemon=True).start()
 
-    def _warm(self) -> None:
+    def _warm(self, given: ScenarioSet) -> None:
         """Load the kernels, or compile them, before they are first wanted."""
         from algorithms.compiled import is_cold
         from hough_tui.ui.warming import warm
 
         if is_cold():
-            self.post_message(Preparing("compiling kernels, once, up to 20 s"))
+            self.post_message(Preparing("compiling kernels, once, up to two minutes"))
         try:
-            warm()
+            warm(given)
         except Exception as error:
             self.post_message(Prepared(error))
         else:

@@ -8,19 +8,30 @@ from algorithms.initiators.base import ChunkInitiator
 from algorithms.initiators.registry import initiators
 from algorithms.scoring import Criterion, score
 from scenarios.clutter import PoissonClutter, Region
-from scenarios.model import Scenario
+from scenarios.model import Scenario, ScenarioSet
 from scenarios.sensors import CartesianSensor
 from scenarios.simulate import draw, truth
 from scenarios.targets import Target
 from scenarios.world import World
 
 
-def warm() -> None:
-    """Load, or compile, the kernels of draws, of every compiled initiator, of scoring, and of clustering."""
-    _warm_clustering()
-    for scenario in (_scene(dimensions=2), _scene(dimensions=3)):
-        _warm_initiators(scenario)
+def warm(given: ScenarioSet) -> None:
+    """Load, or compile, all kernels, and first those that a set has use for."""
+    found = {scenario.dimensions for scenario in given.scenarios}
+    parts = {warm_plane: 2 in found, warm_space: 3 in found, warm_clustering: bool(given.scenes)}
+    for part in sorted(parts, key=lambda part: not parts[part]):
+        part()
     _warm_prediction(_scene(dimensions=2))
+
+
+def warm_plane() -> None:
+    """Load the kernels of draws, of the initiators and of scoring in the plane."""
+    _warm_initiators(_scene(dimensions=2))
+
+
+def warm_space() -> None:
+    """Load the kernels of draws, of the initiators and of scoring in space."""
+    _warm_initiators(_scene(dimensions=3))
 
 
 def _scene(dimensions: int) -> Scenario:
@@ -36,8 +47,8 @@ def _scene(dimensions: int) -> Scenario:
     )
 
 
-def _warm_clustering() -> None:
-    """Draw the smallest scene, and split its points."""
+def warm_clustering() -> None:
+    """Load the kernels of scenes and of clustering."""
     from algorithms.clustering.parameters import Recommended
     from hough_tui.experiments.scene_look import cluster_look, scene_picture
     from scenarios.scenes import ExtendedTarget, Scene, SceneRegion

@@ -51,12 +51,13 @@ async def dealt_with(app: App[Any], patience: float = PATIENCE) -> None:
     calm = turns = 0
     while calm < CALM and app._exception is None and app.screen_stack:
         screen = app.screen
-        # The screen draws sixty times a second; nobody has to wait for that.
-        screen._on_timer_update()
         await asyncio.sleep(0 if turns < 50 else 0.002)
         turns += 1
         is_calm = all(map(_is_waiting, (app, *screen.walk_children(with_self=True))))
         calm = calm + 1 if is_calm else 0
+        if is_calm:
+            # The screen draws sixty times a second; nobody has to wait for that.
+            screen._on_timer_update()
         if time.monotonic() > limit:
             raise AssertionError("something does not come to an end")
 
