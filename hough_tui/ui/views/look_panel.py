@@ -152,8 +152,9 @@ class LookPanel(Widget):
         if seen.plane_votes is not None:
             for index, votes in enumerate(self.query(PairVotes)):
                 votes.show(votes_scene(seen, index))
-        # A table takes longer to draw than plane and accumulator together, so these come first.
-        self.call_after_refresh(self._list_tracks, seen)
+        # A table takes longer to draw than plane and accumulator together, so these come first. They
+        # draw themselves a moment later, and what waits for a refresh must not wait for the one before.
+        self.call_later(self.call_after_refresh, self._list_tracks, seen)
 
     def _list_tracks(self, seen: TrialLook) -> None:
         if seen is self._seen:
