@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, ClassVar
+from typing import Any
 
 from textual import on
-from textual.app import ComposeResult
-from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.widgets import Button
 
-from algorithms.parameters import Problem
 from hough_tui.ui.drawing.shortening import Part
 from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.messages import ElementAdded, ElementRemoved
 from hough_tui.ui.naming import free_name
 from hough_tui.ui.screens.choice import Choice
 from hough_tui.ui.widgets.caption import Caption
+from hough_tui.ui.widgets.element_form import ElementForm
 from scenarios.experiments import Experiment
 from scenarios.model import ScenarioSet
 
@@ -31,16 +28,8 @@ KINDS = {
 """The kinds of experiment."""
 
 
-class ExperimentForm(Vertical):
+class ExperimentForm(ElementForm):
     """One experiment of the set, to be edited; others are added and removed here too."""
-
-    DEFAULT_CSS = """
-    ExperimentForm { height: 1fr; }
-    ExperimentForm Horizontal { height: 1; padding: 0 1; }
-    ExperimentForm Caption { padding: 0; }
-    ExperimentForm Button { min-width: 8; margin-left: 1; }
-    """
-    ACTIONS: ClassVar[dict[str, str]] = {"add": "New", "copy": "Copy", "remove": "Remove"}
 
     class Added(Message):
         """An experiment was added, under a name."""
@@ -54,41 +43,18 @@ class ExperimentForm(Vertical):
         self._given: ScenarioSet | None = None
         self._index = 0
 
-    def compose(self) -> ComposeResult:
-        """Lay out what can be done to the list above the form."""
-        with Horizontal():
-            yield Caption()
-            for action, label in self.ACTIONS.items():
-                yield Button(label, id=action, compact=True)
-        yield ModelForm()
-
     def show(self, given: ScenarioSet, chosen: Experiment | None) -> None:
         """Show an experiment of the set; None where it has none."""
         self._given = given
-        form = self.query_one(ModelForm)
-        form.display = chosen is not None
-        for action in ("copy", "remove"):
-            self.query_one(f"#{action}", Button).disabled = chosen is None
+        self.show_whether_any(chosen is not None)
         if chosen is None:
             self.query_one(Caption).tell("The set has no experiment")
-        else:
-            self.query_one(Caption).tell(Part("Names as in the tree", 1), "a sweep: scans: 5, 10, 15")
-        if chosen is not None:
-            self._index = given.experiments.index(chosen)
-            scenarios = given.chosen_scenarios(chosen)
-            unit = scenarios[0].unit if scenarios else None
-            form.load(chosen, ("experiments", self._index), unit=unit)
-
-    def refuse(self, found: Sequence[Problem]) -> None:
-        """Show why the last edit was not taken."""
-        self.query_one(ModelForm).problems(found)
-
-    def take_focus(self) -> None:
-        """Put the focus where one can go on at once."""
-        if self._given is not None and self._given.experiments:
-            self.query_one(ModelForm).focus_first()
-        else:
-            self.query_one("#add", Button).focus()
+            return
+        self.query_one(Caption).tell(Part("Names as in the tree", 1), "a sweep: scans: 5, 10, 15")
+        self._index = given.experiments.index(chosen)
+        scenarios = given.chosen_scenarios(chosen)
+        unit = scenarios[0].unit if scenarios else None
+        self.query_one(ModelForm).load(chosen, ("experiments", self._index), unit=unit)
 
     @on(Button.Pressed)
     def _pressed(self, event: Button.Pressed) -> None:
