@@ -16,7 +16,8 @@ from hough_tui.cli.cluster import cluster
 from hough_tui.cli.listings import initiators, schema, sets, validate
 from hough_tui.cli.plots import initiate, simulate
 from hough_tui.cli.process import refuse, reported
-from hough_tui.cli.runs import batch, reproduce, results_app
+from hough_tui.cli.results import results_app
+from hough_tui.cli.runs import batch, reproduce
 
 app = typer.Typer(
     name="hough-tui",

@@ -28,6 +28,14 @@ MetricOption = Annotated[
 ]
 
 
+class ComparedMetric(StrEnum):
+    """What of two runs can be compared."""
+
+    SUCCESS = "success_rate"
+    FALSE = "false_track_ratio"
+    EXACT = "count_exact_rate"
+
+
 SetArgument = Annotated[str, typer.Argument(metavar="SET", help="A YAML file, or the name of a bundled set.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document and nothing else.")]
 SeedOption = Annotated[

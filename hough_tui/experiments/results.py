@@ -1,12 +1,23 @@
-"""The result document of a run."""
+"""The result document of a run, and what its rows are told apart by."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from hough_tui import __version__
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.store import Run
+from scenarios.sweeps import SINGULAR
+
+Identity = tuple[str, str, tuple[str | None, ...], tuple[tuple[str, float], ...]]
+"""Set, experiment, what of the set runs, and the swept values."""
+
+
+def identity(row: Mapping[str, Any]) -> Identity:
+    """Return what makes two rows of different runs the same one."""
+    swept = tuple(sorted((row.get("swept") or {}).items()))
+    return row["set"], row["experiment"], tuple(row.get(part) for part in SINGULAR.values()), swept
 
 
 def result(job: Job) -> Run:

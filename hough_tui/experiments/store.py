@@ -130,7 +130,7 @@ class FolderStore(RunStore):
         RequestError
             Where there is no run of that name, or its document cannot be read.
         """
-        path = self._path(name) / "result.json"
+        path = self.folder / self.full_name(name) / "result.json"
         try:
             document: dict[str, Any] = json.loads(read_text(path))
         except json.JSONDecodeError as error:
@@ -147,7 +147,7 @@ class FolderStore(RunStore):
         RequestError
             Where there is no run of that name, or it cannot be read.
         """
-        folder = self._path(name)
+        folder = self.folder / self.full_name(name)
         document = self.document(name)
         paths = {path.stem: path for path in (folder / "sets").glob("*.yaml")}
         try:
@@ -178,7 +178,14 @@ class FolderStore(RunStore):
         os.replace(self.folder / name, doomed)
         shutil.rmtree(doomed)
 
-    def _path(self, name: str) -> Path:
+    def full_name(self, name: str) -> str:
+        """Return the name of a run from a part of it that fits no other.
+
+        Raises
+        ------
+        RequestError
+            Where there is no such run, or more than one.
+        """
         known = self.names()
         matches = [found for found in known if found == name] or [found for found in known if name in found]
         if len(matches) != 1:
@@ -187,7 +194,7 @@ class FolderStore(RunStore):
                     f"'{name}' fits {len(matches)} runs ({', '.join(matches[:3])}, …); give more of the name"
                 )
             raise RequestError(unknown(name, known[:10], "run"))
-        return self.folder / matches[0]
+        return matches[0]
 
 
 def _columns(archive: Mapping[str, NDArray[np.generic]], rows: int) -> tuple[Columns, ...]:

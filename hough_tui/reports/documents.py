@@ -7,7 +7,7 @@ import io
 import json
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -89,6 +89,14 @@ def json_text(document: object) -> str:
     document : of mappings, sequences, texts and numbers, those of numpy among them
     """
     return _written(_plain(document), 0) + "\n"
+
+
+FORMATS: dict[str, tuple[str, Callable[[Mapping[str, Any]], str]]] = {
+    ".csv": ("CSV", lambda document: csv_text(document["rows"])),
+    ".json": ("JSON", json_text),
+    ".md": ("Markdown", lambda document: markdown_text(document["rows"])),
+}
+"""By the ending of a file's name: what the format is called, and how a result document is written so."""
 
 
 def _flat(row: Row) -> dict[str, dict[str, object]]:

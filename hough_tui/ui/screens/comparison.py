@@ -16,10 +16,10 @@ from textual.widgets import Footer, Static
 
 from hough_tui.directories import data_directory
 from hough_tui.experiments.store import Run
+from hough_tui.reports.comparison import METRICS, compare, comparison_sheet
 from hough_tui.reports.documents import sheet_markdown
 from hough_tui.reports.layout import Sheet
-from hough_tui.reports.metrics import metric
-from hough_tui.ui.views.comparison import METRICS, compared
+from hough_tui.reports.metrics import leading_metric, metric
 from hough_tui.ui.widgets.rate_grid import RateGrid
 from scenarios.atomic import replace_file
 
@@ -58,7 +58,9 @@ class ComparisonScreen(ModalScreen[None]):
     def __init__(self, runs: Sequence[tuple[str, Run]]) -> None:
         super().__init__()
         self._runs = tuple(runs)
-        self._metric = METRICS[0]
+        rows = [row for _, run in self._runs for row in run.document["rows"]]
+        self._metrics = [key for key in METRICS if any(key in row for row in rows)] or [METRICS[0]]
+        self._metric = leading_metric(rows[0]) if rows else METRICS[0]
         self._sheet = Sheet("", ())
 
     def compose(self) -> ComposeResult:
@@ -70,13 +72,13 @@ class ComparisonScreen(ModalScreen[None]):
         yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
-        """Compare success first."""
+        """Compare first what runs of this kind are for."""
         self._show()
         self.query_one(RateGrid).focus()
 
     def action_metric(self) -> None:
         """Compare the next metric."""
-        self._metric = METRICS[(METRICS.index(self._metric) + 1) % len(METRICS)]
+        self._metric = self._metrics[(self._metrics.index(self._metric) + 1) % len(self._metrics)]
         self._show()
 
     def action_copy(self) -> None:
@@ -105,7 +107,7 @@ class ComparisonScreen(ModalScreen[None]):
         self.dismiss(None)
 
     def _show(self) -> None:
-        self._sheet = compared(self._runs, self._metric)
+        self._sheet = comparison_sheet(compare(self._runs, self._metric))
         identifying = next(
             (
                 index

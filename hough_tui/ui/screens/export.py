@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -14,17 +14,10 @@ from textual.message import Message
 from textual.screen import ModalScreen
 from textual.widgets import Button, Input, RadioButton, RadioSet, Static
 
-from hough_tui.reports.documents import csv_text, json_text, markdown_text
+from hough_tui.reports.documents import FORMATS
 from scenarios.atomic import replace_file
 
 Document = Mapping[str, Any]
-
-FORMATS: dict[str, tuple[str, Callable[[Document], str]]] = {
-    ".csv": ("CSV", lambda document: csv_text(document["rows"])),
-    ".json": ("JSON", json_text),
-    ".md": ("Markdown", lambda document: markdown_text(document["rows"])),
-}
-"""By the ending of a file's name: what the format is called, and how it is written."""
 
 
 class ExportScreen(ModalScreen[Path | None]):

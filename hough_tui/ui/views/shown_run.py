@@ -14,12 +14,9 @@ from algorithms.errors import RequestError
 from hough_tui.experiments.columns import TrialColumns
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import plan_run
-from hough_tui.experiments.results import result
+from hough_tui.experiments.results import identity, result
 from hough_tui.experiments.store import Run
 from hough_tui.experiments.work import Cell, Columns, Row
-from scenarios.sweeps import SINGULAR
-
-Identity = tuple[str, str, tuple[str | None, ...], tuple[tuple[str, float], ...]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,12 +175,6 @@ class KeptRun(ShownRun):
 
     def document(self) -> dict[str, Any]:
         return self.run.document
-
-
-def identity(row: Mapping[str, Any]) -> Identity:
-    """Return what makes two rows of different runs the same one."""
-    swept = tuple(sorted((row.get("swept") or {}).items()))
-    return row["set"], row["experiment"], tuple(row.get(part) for part in SINGULAR.values()), swept
 
 
 def cell_words(cell: Cell) -> str:

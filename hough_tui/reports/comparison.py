@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hough_tui.experiments.results import Identity, identity
 from hough_tui.experiments.store import Run
 from hough_tui.reports.layout import Column, Sheet
 from hough_tui.reports.metrics import field_name, metric
 from hough_tui.reports.numerals import NONE, Pair, aligned, as_given, fixed, intervals, number, pair, percent
-from hough_tui.ui.views.shown_run import Identity, identity
 from scenarios.sweeps import SINGULAR
 
-METRICS = ("success_rate", "false_track_ratio")
+METRICS = ("success_rate", "false_track_ratio", "count_exact_rate")
 """What can be compared: shares that have an interval and a value in each trial."""
 
 Row = Mapping[str, Any]
@@ -69,47 +69,134 @@ def difference(first: float, ends: Pair, second: float, others: Pair, correlatio
     return Difference(value, value - reach(below_other, above), value + reach(above_other, below))
 
 
-def compared(runs: Sequence[tuple[str, Run]], key: str = METRICS[0]) -> Sheet:
-    """Return the sheet that compares runs, the first of them with each of the others.
+@dataclass(frozen=True, slots=True)
+class ComparedRow:
+    """What several runs say of one and the same row.
+
+    Attributes
+    ----------
+    identity : what it is told apart by
+    rows : of each run; None where it has no such row
+    differences : of each run and the first one, which is the first: None for that, and where
+        one of the two says nothing
+    """
+
+    identity: Identity
+    rows: tuple[Row | None, ...]
+    differences: tuple[Difference | None, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Runs side by side.
+
+    Attributes
+    ----------
+    key : the metric, one of `METRICS`
+    names, seeds : of the runs
+    rows : those that stand in more than one run
+    lone : number of rows that stand in one run only
+    """
+
+    key: str
+    names: tuple[str, ...]
+    seeds: tuple[Any, ...]
+    rows: tuple[ComparedRow, ...]
+    lone: int
+
+    @property
+    def letters(self) -> str:
+        """What the runs are called for short."""
+        return "".join(ascii_uppercase[index % 26] for index in range(len(self.names)))
+
+
+def compare(runs: Sequence[tuple[str, Run]], key: str) -> Comparison:
+    """Compare runs, the first of them with each of the others.
 
     Parameters
     ----------
     runs : names and runs, at least two
     key : of `METRICS`
     """
-    known = metric(key)
     places = [{identity(row): index for index, row in enumerate(run.document["rows"])} for _, run in runs]
     everywhere = list(dict.fromkeys(row for found in places for row in found))
     common = [row for row in everywhere if sum(row in found for found in places) > 1]
-    columns = _names(common) if common else []
-    letters = [ascii_uppercase[index % 26] for index in range(len(runs))]
-    for letter, found, (_, run) in zip(letters, places, runs, strict=True) if common else ():
-        rows = [run.document["rows"][found[row]] if row in found else {} for row in common]
-        columns.append(
-            Column(f"{letter}\n{known.label}", aligned([percent(number(row.get(key))) for row in rows]))
-        )
-        ends = [pair(row.get(known.interval or "")) for row in rows]
+    paired = list(zip(places, runs, strict=True))
+    rows = [_compared(row, [(run, place.get(row)) for place, (_, run) in paired], key) for row in common]
+    return Comparison(
+        key,
+        tuple(name for name, _ in runs),
+        tuple(run.document.get("seed") for _, run in runs),
+        tuple(rows),
+        len(everywhere) - len(common),
+    )
+
+
+def _compared(row: Identity, found: Sequence[tuple[Run, int | None]], key: str) -> ComparedRow:
+    """Return what runs say of a row, from the place that it has in each of them."""
+    base, first = found[0]
+    told = [None if at is None else run.document["rows"][at] for run, at in found]
+    differences = [_difference(base, first, run, at, key) for run, at in found[1:]]
+    return ComparedRow(row, tuple(told), (None, *differences))
+
+
+def comparison_sheet(comparison: Comparison) -> Sheet:
+    """Return a comparison as a table."""
+    known, rows = metric(comparison.key), comparison.rows
+    columns = _names([row.identity for row in rows]) if rows else []
+    for index, letter in enumerate(comparison.letters) if rows else ():
+        told = [row.rows[index] or {} for row in rows]
+        values = [percent(number(row.get(comparison.key))) for row in told]
+        columns.append(Column(f"{letter}\n{known.label}", aligned(values)))
+        ends = [pair(row.get(known.interval or "")) for row in told]
         shown = intervals([(percent(low), percent(high)) for low, high in ends])
         columns.append(Column(f"{letter}\n95 %", shown, rank=20, quiet=True))
-    surprising = 0
-    for letter, found, (_, run) in list(zip(letters, places, runs, strict=True))[1:] if common else ():
-        differences = [_difference(row, runs[0][1], places[0], run, found, key) for row in common]
-        columns += _difference_columns(f"{letter} − {letters[0]}", differences)
-        surprising += sum(given is not None and given.is_beyond_chance for given in differences)
-    return Sheet("", tuple(columns), tuple(_notes(runs, letters, common, everywhere, surprising)))
+    for index, letter in list(enumerate(comparison.letters))[1:] if rows else ():
+        heading = f"{letter} − {comparison.letters[0]}"
+        columns += _difference_columns(heading, [row.differences[index] for row in rows])
+    return Sheet("", tuple(columns), tuple(_notes(comparison)))
 
 
-def _difference(
-    row: Identity,
-    base: Run,
-    base_places: Mapping[Identity, int],
-    other: Run,
-    other_places: Mapping[Identity, int],
-    key: str,
-) -> Difference | None:
-    if row not in base_places or row not in other_places:
+def comparison_document(comparison: Comparison) -> dict[str, Any]:
+    """Return a comparison as scripts read it."""
+    known = metric(comparison.key)
+    rows = []
+    for row in comparison.rows:
+        set_name, experiment, parts, swept = row.identity
+        named = zip(SINGULAR.values(), parts, strict=True)
+        rows.append(
+            {
+                "set": set_name,
+                "experiment": experiment,
+                **{part: name for part, name in named if name is not None},
+                "swept": dict(swept),
+                "values": [None if told is None else told.get(comparison.key) for told in row.rows],
+                "ci95": [None if told is None else told.get(known.interval or "") for told in row.rows],
+                "differences": [
+                    None
+                    if found is None
+                    else {
+                        "value": found.value,
+                        "ci95": [found.low, found.high],
+                        "beyond_chance": found.is_beyond_chance,
+                    }
+                    for found in row.differences
+                ],
+            }
+        )
+    return {
+        "runs": list(comparison.names),
+        "seeds": list(comparison.seeds),
+        "metric": comparison.key,
+        "rows": rows,
+        "rows_in_one_run_only": comparison.lone,
+        "same_criteria": not _differ_in_criteria(comparison),
+    }
+
+
+def _difference(base: Run, first: int | None, other: Run, second: int | None, key: str) -> Difference | None:
+    if first is None or second is None:
         return None
-    first, second = base_places[row], other_places[row]
     before, after = base.document["rows"][first], other.document["rows"][second]
     values = number(before.get(key)), number(after.get(key))
     ends = metric(key).interval or ""
@@ -130,6 +217,8 @@ def _per_trial(columns: Mapping[str, NDArray[Any]], key: str) -> NDArray[np.floa
     if key == "success_rate":
         found: NDArray[np.float64] = columns["found"].mean(axis=1)
         return found
+    if key == "count_exact_rate":
+        return np.asarray(columns["excess"] == 0, np.float64)
     ratio: NDArray[np.float64] = columns["false"] / np.maximum(columns["tracks"], 1)
     return ratio
 
@@ -182,34 +271,36 @@ def _signed(share: float) -> str:
     return text if text.startswith("-") or text == "0.0" else f"+{text}"
 
 
-def _notes(
-    runs: Sequence[tuple[str, Run]],
-    letters: Sequence[str],
-    common: Sequence[Identity],
-    everywhere: Sequence[Identity],
-    surprising: int,
-) -> list[str]:
+def _notes(comparison: Comparison) -> list[str]:
     notes = [
-        f"{letter}: {name}, seed {as_given(run.document.get('seed'))}"
-        for letter, (name, run) in zip(letters, runs, strict=True)
+        f"{letter}: {name}, seed {as_given(seed)}"
+        for letter, name, seed in zip(comparison.letters, comparison.names, comparison.seeds, strict=True)
     ]
-    if not common:
+    if not comparison.rows:
         return [
             *notes,
-            "No row stands in more than one of them: rows are matched by set, experiment, scenario, "
-            "initiator and swept values.",
+            "No row stands in more than one of them: rows are matched by set, experiment, what of the set "
+            "runs, and swept values.",
         ]
-    pairs = len(common) * (len(runs) - 1)
+    found = [given for row in comparison.rows for given in row.differences if given is not None]
+    surprising = sum(given.is_beyond_chance for given in found)
     notes.append(
-        f"{surprising} of {pairs} differences {'lies' if surprising == 1 else 'lie'} beyond chance; "
+        f"{surprising} of {len(found)} differences {'lies' if surprising == 1 else 'lie'} beyond chance; "
         f"with 95 % intervals one in 20 would without any cause."
+        if found
+        else f"Nothing here has a rate of {metric(comparison.key).label} in two of them."
     )
-    if len(everywhere) > len(common):
-        lone = len(everywhere) - len(common)
-        notes.append(f"{lone} row{'s stand' if lone > 1 else ' stands'} in one run only and are left out.")
-    criteria = [
-        [row.get("criterion") for row in run.document["rows"] if identity(row) in common] for _, run in runs
-    ]
-    if any(before != after for before, after in pairwise(criteria)):
+    if comparison.lone:
+        stand = "s stand" if comparison.lone > 1 else " stands"
+        notes.append(f"{comparison.lone} row{stand} in one run only and are left out.")
+    if _differ_in_criteria(comparison):
         notes.append("The runs do not count success by the same criterion everywhere.")
     return notes
+
+
+def _differ_in_criteria(comparison: Comparison) -> bool:
+    return any(
+        before.get("criterion") != after.get("criterion")
+        for row in comparison.rows
+        for before, after in pairwise(told for told in row.rows if told is not None)
+    )

@@ -10,8 +10,8 @@ from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import result
 from hough_tui.experiments.store import Run
+from hough_tui.reports.comparison import METRICS, compare, comparison_sheet, difference
 from hough_tui.reports.documents import sheet_markdown
-from hough_tui.ui.views.comparison import METRICS, compared, difference
 from scenarios.files import load_set
 
 
@@ -20,6 +20,10 @@ def run():
     job = Job(plan_run([load_set("course-report")], experiments=["modified"], trials=400), 2)
     assert job.wait()
     return result(job)
+
+
+def compared(runs, key=METRICS[0]):
+    return comparison_sheet(compare(runs, key))
 
 
 def column(sheet, heading):
@@ -61,11 +65,17 @@ def test_intervals_hold_the_true_difference_as_often_as_they_say(shared):
 
 
 def test_a_run_does_not_differ_from_itself(run):
-    for key in METRICS:
+    for key in METRICS[:2]:
         sheet = compared([("one", run), ("two", run)], key)
         assert column(sheet, "B − A points") == ["0.0"] * 3
         assert column(sheet, "beyond chance") == [""] * 3
         assert any("0 of 3 differences" in note for note in sheet.notes)
+
+
+def test_a_metric_that_the_rows_have_not_is_said_to_be_missing(run):
+    sheet = compared([("one", run), ("two", run)], "count_exact_rate")
+    assert column(sheet, "B − A points") == ["–"] * 3
+    assert any("Nothing here has a rate of exact counts" in note for note in sheet.notes)
 
 
 def test_pairs_of_the_same_draws_are_told_apart_better(run):
