@@ -7,6 +7,7 @@ import importlib.util
 import os
 from collections.abc import Callable
 from functools import cache, cached_property, update_wrapper
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -70,9 +71,8 @@ def cache_folder(package: str = "algorithms") -> Path:
     The folder lies below `$XDG_CACHE_HOME/hough-tui` (by default `~/.cache/hough-tui`); its
     name is a hash of the sources of this package and of the given one.
     """
-    import numba
-
-    digest = hashlib.sha256(numba.__version__.encode())
+    # Not asked of numba itself, which would have to be loaded for it.
+    digest = hashlib.sha256(version("numba").encode())
     for name in sorted({__name__.partition(".")[0], package}):
         spec = importlib.util.find_spec(name)
         locations = (spec.submodule_search_locations if spec else None) or ()

@@ -22,7 +22,6 @@ from hough_tui.ui.messages import (
     FieldEdited,
     FieldUnreadable,
     Prepared,
-    Preparing,
     SetShown,
     TrialOpened,
 )
@@ -38,6 +37,8 @@ if TYPE_CHECKING:
 
 AUTOSAVE_DELAY = 0.8
 """Seconds after a change until the set is kept aside."""
+
+COMPILING = "compiling kernels, once, up to two minutes"
 
 WARM_AT_LATEST = 1.5
 """Seconds after a set is opened until kernels are loaded, even if it shows no draw for which they are."""
@@ -67,7 +68,7 @@ class HoughApp(App[None]):
         self.workspace: Workspace | None = None
         self.wrong_setting: RequestError | None = None
         self._unanswered: Unsaved | None = None
-        self._is_warming = False
+        self._is_cold = self._is_warming = False
         self._main = MainScreen()
 
     def get_default_screen(self) -> Screen[Any]:
@@ -95,6 +96,7 @@ class HoughApp(App[None]):
     @work(thread=True, exclusive=True, exit_on_error=False, group="load", name="load")
     def _load(self, name: str | None) -> None:
         """Import what is heavy, read a set, and look for unsaved work."""
+        from algorithms.compiled import is_cold
         from algorithms.errors import RequestError
         from hough_tui.ui.autosave import aside_file, read_aside, unsaved_work
         from scenarios.bundled import bundled_paths
@@ -108,6 +110,7 @@ class HoughApp(App[None]):
             except RequestError as error:
                 self.call_from_thread(self._refuse_settings, error)
                 return
+        self._is_cold = self._is_cold or is_cold()
         if name is None:
             self.call_from_thread(self._welcome, bundled_sets(), unsaved_work())
             return
@@ -155,7 +158,8 @@ class HoughApp(App[None]):
         self.workspace = Workspace(given, path)
         if is_recovered:
             self.workspace.forget_saved()
-        self._main.tell_state(None)
+        # The first draw compiles some already.
+        self._main.tell_state(COMPILING if self._is_cold else None)
         self._main.show_workspace(self.workspace)
         self._unanswered = kept
         self.set_timer(WARM_AT_LATEST, self._warm_once)
@@ -189,11 +193,8 @@ class HoughApp(App[None]):
 
     def _warm(self, given: ScenarioSet) -> None:
         """Load the kernels, or compile them, before they are first wanted."""
-        from algorithms.compiled import is_cold
         from hough_tui.ui.warming import warm
 
-        if is_cold():
-            self.post_message(Preparing("compiling kernels, once, up to two minutes"))
         try:
             warm(given)
         except Exception as error:
@@ -201,13 +202,10 @@ class HoughApp(App[None]):
         else:
             self.post_message(Prepared())
 
-    @on(Preparing)
-    def _tell_preparing(self, event: Preparing) -> None:
-        self._main.tell_state(event.text)
-
     @on(Prepared)
     def _end_preparing(self, event: Prepared) -> None:
         interpreter.settle()
+        self._is_cold = False
         self._main.tell_state(None)
         if event.error is not None:
             self._tell_error(event.error)

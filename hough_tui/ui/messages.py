@@ -15,14 +15,6 @@ class SetShown(Message):
     """A draw of the set is on the screen, beside its forms."""
 
 
-class Preparing(Message):
-    """Something is prepared in the background, which takes a while."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.text = text
-
-
 class Prepared(Message):
     """All that is prepared in the background is there, or it has failed."""
 

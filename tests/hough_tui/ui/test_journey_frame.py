@@ -1,5 +1,7 @@
 """The frame: sizes, keys, palette, help, and sets that cannot be opened."""
 
+import threading
+
 from textual.command import CommandPalette
 from textual.widgets import OptionList
 
@@ -219,6 +221,20 @@ def test_a_set_that_cannot_be_opened_tells_why_and_another_one_can_be_chosen(dri
 
     drive(damaged, "wrong.yaml", opens=False)
     assert drive(absent, "course-reprt", opens=False).return_code == 0
+
+
+def test_that_kernels_are_compiled_is_told_until_they_are(drive, monkeypatch):
+    ready = threading.Event()
+    monkeypatch.setattr("algorithms.compiled.is_cold", lambda: True)
+    monkeypatch.setattr("hough_tui.ui.warming.warm", lambda given: ready.wait(60))
+
+    async def journey(user):
+        await user.sees("Detection probability", "compiling kernels")
+        ready.set()
+        await user.warm()
+        assert "compiling" not in user.text
+
+    drive(journey, "course-report", opens=False)
 
 
 def test_a_file_is_opened_by_its_path(drive, home):
