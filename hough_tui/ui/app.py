@@ -32,6 +32,7 @@ from hough_tui.ui.widgets.key_line import PALETTE
 
 if TYPE_CHECKING:
     from algorithms.errors import RequestError
+    from algorithms.parameters import Path as FieldPath
     from hough_tui.ui.autosave import Unsaved
     from hough_tui.ui.workspace import Workspace
     from scenarios.model import ScenarioSet
@@ -216,21 +217,21 @@ class HoughApp(App[None]):
 
     @on(FieldEdited)
     def _edit_field(self, event: FieldEdited) -> None:
-        self._edit(lambda workspace: workspace.set(event.path, event.value))
+        self._edit(event.path, lambda workspace: workspace.set(event.path, event.value))
 
     @on(ElementAdded)
     def _add_element(self, event: ElementAdded) -> None:
-        self._edit(lambda workspace: workspace.insert(event.path, event.value))
+        self._edit(event.path, lambda workspace: workspace.insert(event.path, event.value))
 
     @on(ElementRemoved)
     def _remove_element(self, event: ElementRemoved) -> None:
-        self._edit(lambda workspace: workspace.remove(event.path))
+        self._edit(event.path, lambda workspace: workspace.remove(event.path))
 
     @on(FieldUnreadable)
     def _note_unreadable(self) -> None:
         self._main.show_soundness()
 
-    def _edit(self, change: Callable[[Workspace], None]) -> None:
+    def _edit(self, path: FieldPath, change: Callable[[Workspace], None]) -> None:
         from algorithms.parameters import FieldError
 
         if self.workspace is None:
@@ -238,13 +239,13 @@ class HoughApp(App[None]):
         try:
             change(self.workspace)
         except FieldError as error:
-            self._main.refuse(error.problem)
+            self._main.refuse(error.problem, str(path[0]))
             return
-        self._changed()
+        self._changed(str(path[0]))
 
-    def _changed(self) -> None:
+    def _changed(self, part: str | None = None) -> None:
         assert self.workspace is not None
-        self._main.show_set(self.workspace)
+        self._main.show_set(self.workspace, part)
         self._autosave_timer = self.set_timer(AUTOSAVE_DELAY, self._keep_aside)
 
     def _keep_aside(self) -> None:
@@ -397,9 +398,12 @@ class HoughApp(App[None]):
         """Quit, as the command palette calls it."""
         self.action_leave()
 
-    def _leave(self) -> None:
-        self._main.stop_work()
-        self.exit()
+    def _leave(self, status: int = 0) -> None:
+        async def close_and_exit() -> None:
+            await self._main.leave()
+            self.exit(return_code=status)
+
+        self.run_worker(close_and_exit(), group="leave", exclusive=True)
 
     def _when_saved(self, go_on: Callable[[], None]) -> None:
         """Go on at once, or when the user has decided about unsaved changes."""
@@ -432,8 +436,7 @@ class HoughApp(App[None]):
     def _end_by_signal(self, status: int) -> None:
         """Keep unsaved work aside and end, when the process is asked to or has lost its terminal."""
         self._keep_aside()
-        self._main.stop_work()
-        self.exit(return_code=status)
+        self._leave(status)
 
     @on(Worker.StateChanged)
     def _tell_failure(self, event: Worker.StateChanged) -> None:
