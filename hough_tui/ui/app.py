@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -136,6 +137,10 @@ class HoughApp(App[None]):
             self._main.tell_state("loading")
             self._load(chosen)
         elif chosen is not None:
+            from hough_tui.ui.autosave import put_back
+
+            with suppress(OSError):  # it stays where it is, then, and is offered again
+                put_back(chosen)
             self._opened(chosen.given, chosen.path, None, is_recovered=True)
         elif self.workspace is None:
             self.exit()
@@ -163,6 +168,9 @@ class HoughApp(App[None]):
         if kept is not None:
 
             def answer(key: str | None) -> None:
+                if key is None:
+                    self.notify("They stay kept: Ctrl+O offers them again", markup=False)
+                    return
                 self._unanswered = None
                 if key == "recover" and self.workspace is not None:
                     self.workspace = self.workspace.recovered(kept.given)
@@ -256,14 +264,33 @@ class HoughApp(App[None]):
 
         try:
             if workspace.is_changed:
+                self._set_apart_unanswered()
                 keep_aside(workspace.given, workspace.path)
             elif self._unanswered is None:
-                # Work that is still being asked about is not forgotten, whatever ends the application.
+                # Work that is not decided about is not forgotten, whatever ends the application.
                 forget(workspace.given.name, workspace.path)
         except OSError as error:
             self.notify(
                 f"Unsaved work cannot be kept aside: {error.strerror}", severity="warning", markup=False
             )
+
+    def _set_apart_unanswered(self) -> None:
+        from hough_tui.ui.autosave import set_apart
+
+        if self._unanswered is not None:
+            with suppress(FileNotFoundError):  # another session may have decided
+                set_apart(self._unanswered)
+            self._unanswered = None
+
+    def _forget(self, name: str, path: Path | None) -> None:
+        """Remove what is kept aside of a set, but not what was not decided about."""
+        from hough_tui.ui.autosave import forget
+
+        try:
+            self._set_apart_unanswered()
+            forget(name, path)
+        except OSError as error:
+            self.notify(f"Work kept aside stays there: {error.strerror}", severity="warning", markup=False)
 
     def action_undo(self) -> None:
         """Take back the last edit."""
@@ -319,7 +346,6 @@ class HoughApp(App[None]):
 
     def _save(self, path: Path | None) -> bool:
         from algorithms.errors import RequestError
-        from hough_tui.ui.autosave import forget
 
         assert self.workspace is not None
         wrong = self._main.why_not_runnable()
@@ -332,7 +358,7 @@ class HoughApp(App[None]):
         except RequestError as error:
             self.push_screen(telling("The set is not saved", str(error)))
             return False
-        forget(self.workspace.given.name, before)
+        self._forget(self.workspace.given.name, before)
         self._main.show_set(self.workspace)
         self.notify(f"Saved {saved}", markup=False)
         return True
@@ -414,9 +440,7 @@ class HoughApp(App[None]):
 
         def answer(key: str | None) -> None:
             if key == "discard":
-                from hough_tui.ui.autosave import forget
-
-                forget(workspace.given.name, workspace.path)
+                self._forget(workspace.given.name, workspace.path)
                 go_on()
             elif key == "save":
                 if workspace.path is None:
