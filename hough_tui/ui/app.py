@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -31,6 +32,7 @@ from hough_tui.ui.widgets.key_line import PALETTE
 
 if TYPE_CHECKING:
     from algorithms.errors import RequestError
+    from algorithms.parameters import Path as FieldPath
     from hough_tui.ui.autosave import Unsaved
     from hough_tui.ui.workspace import Workspace
     from scenarios.model import ScenarioSet
@@ -138,6 +140,10 @@ class HoughApp(App[None]):
             self._main.tell_state("loading")
             self._load(chosen)
         elif chosen is not None:
+            from hough_tui.ui.autosave import put_back
+
+            with suppress(OSError):  # it stays where it is, then, and is offered again
+                put_back(chosen)
             self._opened(chosen.given, chosen.path, None, is_recovered=True)
         elif self.workspace is None:
             self.exit()
@@ -166,6 +172,9 @@ class HoughApp(App[None]):
         if kept is not None:
 
             def answer(key: str | None) -> None:
+                if key is None:
+                    self.notify("They stay kept: Ctrl+O offers them again", markup=False)
+                    return
                 self._unanswered = None
                 if key == "recover" and self.workspace is not None:
                     self.workspace = self.workspace.recovered(kept.given)
@@ -214,21 +223,21 @@ class HoughApp(App[None]):
 
     @on(FieldEdited)
     def _edit_field(self, event: FieldEdited) -> None:
-        self._edit(lambda workspace: workspace.set(event.path, event.value))
+        self._edit(event.path, lambda workspace: workspace.set(event.path, event.value))
 
     @on(ElementAdded)
     def _add_element(self, event: ElementAdded) -> None:
-        self._edit(lambda workspace: workspace.insert(event.path, event.value))
+        self._edit(event.path, lambda workspace: workspace.insert(event.path, event.value))
 
     @on(ElementRemoved)
     def _remove_element(self, event: ElementRemoved) -> None:
-        self._edit(lambda workspace: workspace.remove(event.path))
+        self._edit(event.path, lambda workspace: workspace.remove(event.path))
 
     @on(FieldUnreadable)
     def _note_unreadable(self) -> None:
         self._main.show_soundness()
 
-    def _edit(self, change: Callable[[Workspace], None]) -> None:
+    def _edit(self, path: FieldPath, change: Callable[[Workspace], None]) -> None:
         from algorithms.parameters import FieldError
 
         if self.workspace is None:
@@ -236,13 +245,13 @@ class HoughApp(App[None]):
         try:
             change(self.workspace)
         except FieldError as error:
-            self._main.refuse(error.problem)
+            self._main.refuse(error.problem, str(path[0]))
             return
-        self._changed()
+        self._changed(str(path[0]))
 
-    def _changed(self) -> None:
+    def _changed(self, part: str | None = None) -> None:
         assert self.workspace is not None
-        self._main.show_set(self.workspace)
+        self._main.show_set(self.workspace, part)
         self._autosave_timer = self.set_timer(AUTOSAVE_DELAY, self._keep_aside)
 
     def _keep_aside(self) -> None:
@@ -253,14 +262,33 @@ class HoughApp(App[None]):
 
         try:
             if workspace.is_changed:
+                self._set_apart_unanswered()
                 keep_aside(workspace.given, workspace.path)
             elif self._unanswered is None:
-                # Work that is still being asked about is not forgotten, whatever ends the application.
+                # Work that is not decided about is not forgotten, whatever ends the application.
                 forget(workspace.given.name, workspace.path)
         except OSError as error:
             self.notify(
                 f"Unsaved work cannot be kept aside: {error.strerror}", severity="warning", markup=False
             )
+
+    def _set_apart_unanswered(self) -> None:
+        from hough_tui.ui.autosave import set_apart
+
+        if self._unanswered is not None:
+            with suppress(FileNotFoundError):  # another session may have decided
+                set_apart(self._unanswered)
+            self._unanswered = None
+
+    def _forget(self, name: str, path: Path | None) -> None:
+        """Remove what is kept aside of a set, but not what was not decided about."""
+        from hough_tui.ui.autosave import forget
+
+        try:
+            self._set_apart_unanswered()
+            forget(name, path)
+        except OSError as error:
+            self.notify(f"Work kept aside stays there: {error.strerror}", severity="warning", markup=False)
 
     def action_undo(self) -> None:
         """Take back the last edit."""
@@ -316,7 +344,6 @@ class HoughApp(App[None]):
 
     def _save(self, path: Path | None) -> bool:
         from algorithms.errors import RequestError
-        from hough_tui.ui.autosave import forget
 
         assert self.workspace is not None
         wrong = self._main.why_not_runnable()
@@ -329,7 +356,7 @@ class HoughApp(App[None]):
         except RequestError as error:
             self.push_screen(telling("The set is not saved", str(error)))
             return False
-        forget(self.workspace.given.name, before)
+        self._forget(self.workspace.given.name, before)
         self._main.show_set(self.workspace)
         self.notify(f"Saved {saved}", markup=False)
         return True
@@ -395,9 +422,12 @@ class HoughApp(App[None]):
         """Quit, as the command palette calls it."""
         self.action_leave()
 
-    def _leave(self) -> None:
-        self._main.stop_work()
-        self.exit()
+    def _leave(self, status: int = 0) -> None:
+        async def close_and_exit() -> None:
+            await self._main.leave()
+            self.exit(return_code=status)
+
+        self.run_worker(close_and_exit(), group="leave", exclusive=True)
 
     def _when_saved(self, go_on: Callable[[], None]) -> None:
         """Go on at once, or when the user has decided about unsaved changes."""
@@ -408,9 +438,7 @@ class HoughApp(App[None]):
 
         def answer(key: str | None) -> None:
             if key == "discard":
-                from hough_tui.ui.autosave import forget
-
-                forget(workspace.given.name, workspace.path)
+                self._forget(workspace.given.name, workspace.path)
                 go_on()
             elif key == "save":
                 if workspace.path is None:
@@ -430,8 +458,7 @@ class HoughApp(App[None]):
     def _end_by_signal(self, status: int) -> None:
         """Keep unsaved work aside and end, when the process is asked to or has lost its terminal."""
         self._keep_aside()
-        self._main.stop_work()
-        self.exit(return_code=status)
+        self._leave(status)
 
     @on(Worker.StateChanged)
     def _tell_failure(self, event: Worker.StateChanged) -> None:

@@ -59,6 +59,35 @@ def forget(name: str, path: Path | None) -> None:
     aside_file(name, path).unlink(missing_ok=True)
 
 
+def set_apart(kept: Unsaved) -> None:
+    """Give work that was not decided about a place of its own, where no later edit takes its place.
+
+    Raises
+    ------
+    OSError
+        Where the folder cannot be written.
+    """
+    when = "".join(filter(str.isdigit, kept.when))
+    kept.file.replace(kept.file.with_stem(f"{kept.file.stem}-{when}"))
+
+
+def put_back(kept: Unsaved) -> None:
+    """Give work that is taken up again the place of its set; what is kept there is set apart.
+
+    Raises
+    ------
+    OSError
+        Where the folder cannot be written.
+    """
+    own = aside_file(kept.given.name, kept.path)
+    if kept.file == own:
+        return
+    other = read_aside(own)
+    if other is not None:
+        set_apart(other)
+    kept.file.replace(own)
+
+
 def aside_file(name: str, path: Path | None) -> Path:
     """Return where a set is kept aside; each file has its own place."""
     key = hashlib.sha256(str(path.resolve() if path else "").encode()).hexdigest()[:10]

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Container, Horizontal
+from textual.widget import Widget
 from textual.widgets import TabbedContent, TabPane
 
 from hough_tui.ui.screens.attentive import AttentiveScreen
@@ -42,6 +44,10 @@ WIDE = 120
 """Columns from which the tree stands beside the views."""
 
 
+LONGEST_MOUNTING = 0.3
+"""Seconds that whoever leaves waits at most for widgets that are being mounted."""
+
+
 class ViewPane(TabPane):
     """The place of a view, empty until it is first shown."""
 
@@ -71,6 +77,7 @@ class MainScreen(AttentiveScreen):
         self._views: dict[str, Any] = {}
         self._stale: set[str] = set()
         self._showing = asyncio.Lock()
+        self._is_leaving = False
 
     def compose(self) -> ComposeResult:
         """Lay out the frame."""
@@ -102,10 +109,13 @@ class MainScreen(AttentiveScreen):
 
         assert self._workspace is not None
         async with self._showing:
-            for view in self._views.values():
-                await view.remove()
-            self._views.clear()
+            # They are told of nothing more while they are taken down: what they consist of goes bit by bit.
+            former, self._views = list(self._views.values()), {}
             self._stale.clear()
+            for view in former:
+                _stop_work_of(view)
+                await view.remove()
+            self.query_one(StatusLine).job = ""
             place = self.query_one("#tree-place")
             await place.remove_children()
             await place.mount(SetTree())
@@ -114,8 +124,14 @@ class MainScreen(AttentiveScreen):
             self.query_one(TabbedContent).active = "clustering"
         await self._show_tab(self.query_one(TabbedContent).active)
 
-    def show_set(self, workspace: Workspace) -> None:
-        """Show the set as it is now: at once in the view that is seen, in the others when they are."""
+    def show_set(self, workspace: Workspace, part: str | None = None) -> None:
+        """Show the set as it is now: at once in the view that is seen, in the others when they are.
+
+        Parameters
+        ----------
+        part : the list of the set that an edit was of; the form that asked for it is answered even where
+            another view is seen by now
+        """
         from hough_tui.ui.widgets.set_tree import SetTree
 
         for tree in self.query(SetTree):
@@ -126,14 +142,20 @@ class MainScreen(AttentiveScreen):
         )
         status.is_changed = workspace.is_changed
         active = self.query_one(TabbedContent).active
-        self._stale = set(self._views) - {active}
-        if active in self._views:
-            self._views[active].show_set(workspace.given)
+        told = {active, VIEWS_OF.get(part or "")} & set(self._views)
+        self._stale = set(self._views) - told
+        for name in told:
+            self._views[name].show_set(workspace.given)
         self.show_soundness()
 
-    def refuse(self, problem: Problem) -> None:
-        """Put beside its field why the last edit was not taken."""
-        view = self._views.get(self.query_one(TabbedContent).active)
+    def refuse(self, problem: Problem, part: str) -> None:
+        """Put beside its field why the last edit was not taken.
+
+        Parameters
+        ----------
+        part : the list of the set that the edit was of: another view may be seen by now
+        """
+        view = self._views.get(VIEWS_OF[part])
         if hasattr(view, "refuse"):
             view.refuse([problem])
         self.show_soundness()
@@ -179,12 +201,13 @@ class MainScreen(AttentiveScreen):
             await self._show(name, chosen)
 
     async def _show(self, name: str, chosen: tuple[str, int] | None) -> None:
-        if self._workspace is None or not name:
+        if self._workspace is None or not name or self._is_leaving:
             return
         if name not in self._views:
             view = _view(name)
-            self._views[name] = view
             await self.query_one(f"#{name}", TabPane).mount(view)
+            # Only now: an edit or a signal that comes meanwhile would meet a view without its parts.
+            self._views[name] = view
             view.show_set(self._workspace.given)
             self.show_soundness()
         elif name in self._stale:
@@ -259,8 +282,26 @@ class MainScreen(AttentiveScreen):
     def stop_work(self) -> None:
         """Stop what runs in the background."""
         for view in self._views.values():
-            if hasattr(view, "stop_work"):
-                view.stop_work()
+            _stop_work_of(view)
+
+    async def leave(self) -> None:
+        """Stop all work, and let what is being mounted get there: half a widget cannot be taken down."""
+        self._is_leaving = True
+        self.stop_work()
+        async with self._showing:
+            self.stop_work()
+            with suppress(TimeoutError):
+                async with asyncio.timeout(LONGEST_MOUNTING):
+                    while not all(widget.is_mounted for widget in self.walk_children(Widget)):
+                        await asyncio.sleep(0.005)
+
+
+def _stop_work_of(view: Widget) -> None:
+    """Stop what runs in the background for a view, and what would be shown of it."""
+    if hasattr(view, "stop_work"):
+        view.stop_work()
+    for widget in view.walk_children(Widget, with_self=True):
+        widget.workers.cancel_node(widget)
 
 
 def _view(name: str) -> Any:

@@ -156,9 +156,11 @@ class MonteCarloView(Widget):
             self.query_one(Hint).focus()
 
     def stop_work(self) -> None:
-        """Stop the run, since the application ends."""
+        """Stop the run and hear no more of it, since the view is taken down."""
         if self._current is not None:
             self._current.cancel(is_leaving=True)
+            # What it still tells would find a view that is taken down in parts.
+            self._current = None
 
     # Running
 

@@ -286,6 +286,47 @@ def test_unsaved_work_is_kept_aside_and_recovered_at_the_next_start(drive):
     assert unsaved_work() == []
 
 
+def test_unsaved_work_that_was_not_decided_about_outlives_further_edits(drive):
+    async def lost(user):
+        await user.go("f2")
+        await user.fill(SCANS, "9")
+        await user.until(unsaved_work)
+        user.app.exit()
+
+    async def go_on(user):
+        await user.screen("Question")
+        await user.press("escape")
+        await user.screen("MainScreen")
+        await user.go("f2")
+        await user.fill(SCANS, "8")
+        await user.until(lambda: 8 in kept_scans())
+        assert kept_scans() == [8, 9]
+        await user.press("ctrl+z")
+        await user.until(lambda: kept_scans() == [9])
+        user.app.exit()
+
+    async def take_up(user):
+        await user.screen("Welcome")
+        await user.sees("unsaved course-report")
+        await user.press("enter")
+        await user.warm()
+        assert user.value(*SCANS) == 9
+        await user.press("f12")
+        await user.screen("PathPrompt")
+        await user.press("enter")
+        await user.screen("MainScreen")
+        await user.until(lambda: "● changed" not in user.text)
+
+    def kept_scans():
+        return sorted(kept.given.scenarios[0].scans for kept in unsaved_work())
+
+    drive(lost, "course-report")
+    drive(go_on, "course-report")
+    assert kept_scans() == [9]
+    drive(take_up)
+    assert kept_scans() == []
+
+
 def test_unsaved_work_can_be_forgotten(drive):
     async def lost(user):
         await user.go("f2")
