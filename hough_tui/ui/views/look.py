@@ -251,7 +251,9 @@ class LookView(Widget):
     def _show(
         self, drawn: Picture, found: list[TrialLook | str], swept: dict[str, int | float] | None
     ) -> None:
-        for panel, seen in zip(self.query(LookPanel), found, strict=False):
+        # One that is just coming is shown what there is to see once it is there.
+        panels = [panel for panel in self.query(LookPanel) if panel.is_mounted]
+        for panel, seen in zip(panels, found, strict=False):
             if isinstance(seen, str):
                 panel.refuse(seen, drawn)
             else:
