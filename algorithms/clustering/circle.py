@@ -16,7 +16,11 @@ def cut_open(doppler, offsets, span):  # type: ignore[no-untyped-def]
     ----------
     doppler : float64 (n,)
     offsets : int64 (scans + 1,), where each scan begins, and the end of the last
-    span : (scans,), length of the circle, in the unit of the Dopplers
+    span : float64 (scans,), length of the circle, in the unit of the Dopplers
+
+    Returns
+    -------
+    float64 (n,); what lies below the cut is moved up by the span
     """
     opened = doppler.copy()
     for scan in range(len(offsets) - 1):

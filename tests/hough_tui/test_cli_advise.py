@@ -3,12 +3,10 @@
 import json
 import math
 import re
-import sys
 
 import pytest
 
 from algorithms.intervals import wilson
-from hough_tui.cli import main
 from scenarios.files import load_set
 
 CROSSING = ("course-report:two-crossing", "--set", "detection_probability=0.9")
@@ -26,17 +24,10 @@ def options(**changed: object) -> list[object]:
 
 
 @pytest.fixture
-def cli(data_home, monkeypatch, capsys):
-    """Run a command; return its exit status, what it printed and what it said."""
+def cli(cli, monkeypatch):
+    """Run a command at a width of its own."""
     monkeypatch.setenv("COLUMNS", "100")
-
-    def run(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["hough-tui", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        return ended.value.code or 0, *capsys.readouterr()
-
-    return run
+    return cli
 
 
 @pytest.fixture

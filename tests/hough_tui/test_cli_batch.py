@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hough_tui.cli import main
 from hough_tui.experiments.store import FolderStore
 
 PROJECT = Path(__file__).parents[2]
@@ -53,19 +52,6 @@ experiments:
     criterion: {rho: 3.0, theta_deg: 6}
   - {name: plain, trials: 5, seed: 4, criterion: {plots: 3}, control: false}
 """
-
-
-@pytest.fixture
-def cli(data_home, monkeypatch, capsys):
-    """Run a command; return its exit status, what it printed and what it said."""
-
-    def run(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["hough-tui", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        return ended.value.code or 0, *capsys.readouterr()
-
-    return run
 
 
 @pytest.fixture

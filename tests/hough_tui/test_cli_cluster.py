@@ -4,12 +4,10 @@ import csv
 import io
 import json
 import math
-import sys
 
 import numpy as np
 import pytest
 
-from hough_tui.cli import main
 from scenarios.files import load_set
 from scenarios.range_doppler import draw_scene
 
@@ -18,20 +16,11 @@ SQUARE = ((0, 0), (0, 2), (2, 0), (2, 2))
 
 
 @pytest.fixture
-def cli(data_home, tmp_path, monkeypatch, capsys):
-    """Run a command; return its exit status, what it printed and what it said."""
+def cli(cli, tmp_path, monkeypatch):
+    """Run a command in a folder and at a width of its own."""
     monkeypatch.setenv("COLUMNS", "110")
     monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["hough-tui", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        out, err = capsys.readouterr()
-        said = [line for line in err.splitlines() if not line.startswith("hough-tui: compiling")]
-        return ended.value.code or 0, out, "\n".join(said)
-
-    return run
+    return cli
 
 
 @pytest.fixture

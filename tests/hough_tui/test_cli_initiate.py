@@ -12,8 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hough_tui.cli import main
-
 PROJECT = Path(__file__).parents[2]
 FLIGHTS = PROJECT.parent / "shared" / "data" / "flights_paris_4s.csv"
 
@@ -22,19 +20,6 @@ LIKE = ["--like", "course-report:two-crossing", "--initiator", "standard"]
 LIKE += [part for value in GRID for part in ("--set", value)]
 
 TARGETS = {0: ((40.0, 20.0), (0.3, 0.18)), 1: ((20.0, 80.0), (0.3, -0.18))}
-
-
-@pytest.fixture
-def cli(data_home, monkeypatch, capsys):
-    """Run a command; return its exit status, what it printed and what it said."""
-
-    def run(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["hough-tui", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        return ended.value.code or 0, *capsys.readouterr()
-
-    return run
 
 
 @pytest.fixture

@@ -4,11 +4,9 @@ import csv
 import io
 import json
 import re
-import sys
 
 import pytest
 
-from hough_tui.cli import main
 from hough_tui.cli.options import ComparedMetric
 from hough_tui.reports.comparison import METRICS
 
@@ -27,19 +25,6 @@ initiators: [{name: standard}]
 experiments:
   - {name: swept, sweep: {sensor.detection_probability: [1, 0.2]}, trials: 60, seed: 3, criterion: {plots: 3}}
 """
-
-
-@pytest.fixture
-def cli(data_home, monkeypatch, capsys):
-    """Run a command; return its exit status, what it printed and what it said."""
-
-    def run(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["hough-tui", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        return ended.value.code or 0, *capsys.readouterr()
-
-    return run
 
 
 @pytest.fixture

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hough_tui.cli import main
 from hough_tui.experiments.engine import Job
 from hough_tui.experiments.plan import plan_run
 from scenarios.files import load_set
@@ -21,20 +20,6 @@ from scenarios.world import World
 
 PROJECT = Path(__file__).parents[2]
 CROSSING = ("simulate", "course-report", "--scenario", "two-crossing")
-
-
-@pytest.fixture
-def cli(data_home, monkeypatch, capsys):
-    """Run a command; return its exit status, what it printed and what it said."""
-
-    def run(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["hough-tui", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        status, (out, err) = ended.value.code or 0, capsys.readouterr()
-        return status, out, "".join(line for line in err.splitlines(True) if "compiling" not in line)
-
-    return run
 
 
 def same_bits(one, other) -> bool:
