@@ -246,7 +246,7 @@ async def inside(name: str, descriptor: int) -> None:
 @contextmanager
 def place() -> Iterator[tuple[dict[str, str], Callable[[int], str]]]:
     """Yield an environment with folders of its own, and what writes a set of so many trials a cell."""
-    from scenarios.files import locate
+    from scenarios.files.set_files import locate
 
     with tempfile.TemporaryDirectory() as folder:
         environment = {

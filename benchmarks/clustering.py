@@ -18,7 +18,7 @@ from algorithms.clustering.modes import cluster
 from algorithms.clustering.parameters import Clustering, CorrectedPatent, Dbscan, KMeans, Recommended
 from algorithms.clustering.points import Points
 from algorithms.clustering.scoring import score_clusters
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 from scenarios.range_doppler import draw_scene
 from scenarios.scenes import ExtendedTarget, Scene, SceneRegion
 

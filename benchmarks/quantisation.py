@@ -22,8 +22,8 @@ from algorithms.quantisation.prediction import predict
 from algorithms.quantisation.question import Question, TargetLine
 from algorithms.quantisation.rules import widest_row
 from algorithms.quantisation.spread import VoteDistribution
-from hough_tui.experiments.confirmation import Trials, run_trials
-from hough_tui.experiments.designs import Demands, question_of
+from hough_tui.quantisation.confirmation import Trials, run_trials
+from hough_tui.quantisation.designs import Demands, question_of
 from scenarios.model import Scenario
 
 Answer = TypeVar("Answer")

@@ -19,7 +19,7 @@ from algorithms.context import Context, Unit
 from algorithms.initiators.registry import initiator
 from algorithms.parameters import validated
 from algorithms.plots import PlotChunk
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 from scenarios.simulate import draw
 from scenarios.world import World
 

@@ -176,11 +176,11 @@ def tidied(picture: str) -> str:
 
 def keep_runs() -> None:
     """Keep the runs that the pictures of the results show."""
-    from hough_tui.experiments.engine import Job
+    from hough_tui.experiments.engines.threads import Job
     from hough_tui.experiments.plan import plan_run
     from hough_tui.experiments.results import result
-    from hough_tui.experiments.store import FolderStore
-    from scenarios.files import load_set
+    from hough_tui.experiments.stores.folder import FolderStore
+    from scenarios.files.set_files import load_set
 
     for called, seed in zip(KEPT, (7, 8), strict=True):
         job = Job(plan_run([load_set(SET)], experiments=["tables"], seed=seed))
@@ -191,7 +191,7 @@ def keep_runs() -> None:
 
 def forget_new_runs() -> None:
     """Remove the runs that a picture was taken of: no later one shall show them."""
-    from hough_tui.experiments.store import FolderStore
+    from hough_tui.experiments.stores.folder import FolderStore
 
     store = FolderStore()
     for name in store.names():

@@ -58,7 +58,7 @@ def open_application(
 ) -> None:
     """Open the application, on a set where one is given."""
     from hough_tui.ui.terminal import require_terminal
-    from scenarios.bundled import bundled_paths
+    from scenarios.files.bundled import bundled_paths
 
     if name is not None and name not in bundled_paths() and not Path(name).exists():
         from algorithms.parameters import unknown

@@ -72,9 +72,9 @@ def advise(
     )
     refuse(name is None and bool(assignments), "--set changes fields of a scenario: name one, SET:SCENARIO")
     from algorithms.quantisation.advisor import advise as recommend
-    from hough_tui.experiments.advice import document
-    from hough_tui.experiments.designs import scenario_design, sensing_design
-    from hough_tui.experiments.options import demands, known_sensor, sensing
+    from hough_tui.cli.sensor_options import demands, known_sensor, sensing
+    from hough_tui.quantisation.advice import document
+    from hough_tui.quantisation.designs import scenario_design, sensing_design
     from hough_tui.reports.advice import advice_tables
     from hough_tui.reports.documents import json_text
 
@@ -89,11 +89,11 @@ def advise(
     advice = recommend(design.question)
     told = document(design, advice)
     if check is not None:
-        from hough_tui.experiments.confirmation import confirm
+        from hough_tui.quantisation.confirmation import confirm
 
         told["check"] = confirm(design, advice.grid, advice.votes, check, seed)
     if apply is not None:
-        from hough_tui.experiments.adoption import adopt_in_file
+        from hough_tui.quantisation.apply_advice import adopt_in_file
 
         adoption = adopt_in_file(apply, advice, initiator or ())
         told["applied"] = {"set": apply, "initiators": adoption.names}

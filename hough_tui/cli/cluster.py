@@ -62,7 +62,7 @@ def cluster(
         csv is not None and not printed and _is_same_file(Path(csv), points),
         f"--csv {csv}: this is the file of the points, which the plots would replace; give another name",
     )
-    from hough_tui.experiments.clustering import (
+    from hough_tui.recorded.clustering import (
         can_be_followed,
         cluster_recording,
         document,
@@ -72,9 +72,9 @@ def cluster(
     )
     from hough_tui.reports.clusters import cluster_table, step_table
     from hough_tui.reports.documents import csv_text, json_text
-    from scenarios.atomic import replace_file
-    from scenarios.files import read_text
-    from scenarios.point_files import parse_points
+    from scenarios.files.atomic import replace_file
+    from scenarios.files.point_files import parse_points
+    from scenarios.files.set_files import read_text
 
     parameters, notes = given_clustering(
         mode, range_extent, doppler_extent, result and result.value, assignments or ()

@@ -20,7 +20,7 @@ def sets(
     """List the bundled scenario sets, or print one to begin from."""
     from hough_tui.reports.documents import json_text
     from hough_tui.reports.tables import listing
-    from scenarios.files import bundled_sets, locate, read_text
+    from scenarios.files.set_files import bundled_sets, locate, read_text
 
     if name is not None:
         refuse(as_json, "--json lists the sets: leave out the name")
@@ -46,7 +46,7 @@ def initiators(
     """List the initiators, or show the parameters of one."""
     from algorithms.initiators.registry import initiator
     from algorithms.initiators.registry import initiators as known
-    from hough_tui.experiments.declarations import declaration
+    from hough_tui.reports.describe_initiator import declaration
     from hough_tui.reports.documents import json_text
     from hough_tui.reports.tables import listing
 
@@ -76,7 +76,7 @@ def validate(
 ) -> None:
     """Check scenario sets and say what is wrong, with file, line, column and field."""
     from algorithms.errors import RequestError
-    from scenarios.files import load_set
+    from scenarios.files.set_files import load_set
 
     wrong = []
     for name in names:

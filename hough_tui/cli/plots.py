@@ -57,12 +57,12 @@ def initiate(
     """Run an initiator on recorded plots and print its tracks."""
     refuse(as_json and plot, "--json prints one document and nothing else: leave out --plot")
     from algorithms.initiators.registry import initiator
-    from hough_tui.experiments import initiation
-    from hough_tui.experiments.options import known_sensor, window
+    from hough_tui.cli.sensor_options import known_sensor, window
+    from hough_tui.recorded import initiation
     from hough_tui.reports.documents import json_text
-    from scenarios.atomic import replace_file
-    from scenarios.files import read_text
-    from scenarios.recordings import parse_plots, write_assigned
+    from scenarios.files.atomic import replace_file
+    from scenarios.files.set_files import read_text
+    from scenarios.recordings.csv_plots import parse_plots, write_assigned
 
     algorithm = initiator(name)
     parameters = initiation.given_parameters(algorithm, config, assignments or ())
@@ -131,10 +131,10 @@ def simulate(
     ] = None,
 ) -> None:
     """Write the plots of one trial as CSV, with the target that each came from and its true position."""
-    from hough_tui.experiments.choice import changed, chosen_clustering, chosen_scenario, seed_of
-    from hough_tui.experiments.simulation import cell_words, simulated
-    from scenarios.atomic import replace_file
-    from scenarios.files import load_set
+    from hough_tui.inspection.simulated_trial import cell_words, simulated
+    from scenarios.files.atomic import replace_file
+    from scenarios.files.set_files import load_set
+    from scenarios.selection import changed, chosen_clustering, chosen_scenario, seed_of
 
     given = load_set(name)
     chosen = chosen_scenario(given, scenario)

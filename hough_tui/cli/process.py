@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 if TYPE_CHECKING:
-    from hough_tui.experiments.engine import Job
+    from hough_tui.experiments.engines.threads import Job
 
 WRONG_REQUEST, FAILED, INTERRUPTED = 2, 1, 130
 

@@ -22,7 +22,7 @@ results_app = typer.Typer(
 @reported
 def list_results(as_json: JsonOption = False) -> None:
     """List the runs that were kept, the newest first."""
-    from hough_tui.experiments.store import FolderStore
+    from hough_tui.experiments.stores.folder import FolderStore
     from hough_tui.reports.documents import json_text
     from hough_tui.reports.tables import listing
 
@@ -53,7 +53,7 @@ def show_result(
 ) -> None:
     """Show the rates of a run that was kept."""
     refuse(as_json and plot, "--json prints one document and nothing else: leave out --plot")
-    from hough_tui.experiments.store import FolderStore
+    from hough_tui.experiments.stores.folder import FolderStore
     from hough_tui.reports.documents import json_text
 
     document = FolderStore().document(name)
@@ -77,7 +77,7 @@ def compare_results(
 ) -> None:
     """Compare runs row by row, each with the first, and tell which rates differ beyond chance."""
     refuse(len(names) < 2, f"there is one run only, '{names[0]}': name another one to compare it with")
-    from hough_tui.experiments.store import FolderStore
+    from hough_tui.experiments.stores.folder import FolderStore
     from hough_tui.reports.comparison import compare, comparison_document, comparison_sheet
     from hough_tui.reports.documents import json_text
     from hough_tui.reports.layout import sheet_table
@@ -106,9 +106,9 @@ def export_result(
     ],
 ) -> None:
     """Write the rates of a run that was kept to a file, which is replaced where it exists."""
-    from hough_tui.experiments.store import FolderStore
+    from hough_tui.experiments.stores.folder import FolderStore
     from hough_tui.reports.documents import FORMATS
-    from scenarios.atomic import replace_file
+    from scenarios.files.atomic import replace_file
 
     ending = path.suffix.lower()
     refuse(ending not in FORMATS, f"{path}: the name must end in one of {', '.join(FORMATS)}")

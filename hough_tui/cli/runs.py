@@ -45,12 +45,12 @@ def batch(
         as_json and (plot or str(csv) == "-"),
         "--json prints one document and nothing else: leave out --plot and --csv -",
     )
-    from hough_tui.experiments.engine import Job
+    from hough_tui.experiments.engines.threads import Job
     from hough_tui.experiments.plan import plan_run
     from hough_tui.experiments.results import result
     from hough_tui.reports.documents import csv_text, json_text
-    from scenarios.atomic import replace_file
-    from scenarios.files import load_set
+    from scenarios.files.atomic import replace_file
+    from scenarios.files.set_files import load_set
 
     plan = plan_run([load_set(name) for name in sets], experiments=experiment or (), trials=trials, seed=seed)
     announce_compilation()
@@ -82,7 +82,7 @@ def batch(
 
 def keep_run(run: Any) -> int:
     """Keep a run and say where; return the exit status, since a full disk must not cost the result."""
-    from hough_tui.experiments.store import FolderStore
+    from hough_tui.experiments.stores.folder import FolderStore
 
     try:
         name = FolderStore().add(run)
@@ -123,9 +123,9 @@ def reproduce(
     as_json: JsonOption = False,
 ) -> None:
     """Print published tables beside what is measured here, with 95 % intervals."""
-    from hough_tui.experiments.engine import Job
-    from hough_tui.experiments.published.comparison import TABLES, compare, plan_table
-    from hough_tui.experiments.published.comparison import published_table as find_table
+    from hough_tui.experiments.engines.threads import Job
+    from hough_tui.published.comparison import TABLES, compare, plan_table
+    from hough_tui.published.comparison import published_table as find_table
     from hough_tui.reports.documents import json_text
     from hough_tui.reports.tables import published_table
 

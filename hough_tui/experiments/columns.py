@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from algorithms.scoring import Scores
 from algorithms.tracks import TrackChunk
-from hough_tui.experiments.work import Columns
+from hough_tui.experiments.cases import Columns
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from algorithms.errors import RequestError
 from algorithms.parameters import unknown
-from hough_tui.experiments.chunks import InitiationCell
-from hough_tui.experiments.scene_chunks import ClusteringCell
-from hough_tui.experiments.work import Cell, SharedDraws, SharedRun
+from hough_tui.experiments.cases import Cell, SharedDraws, SharedRun
+from hough_tui.experiments.chunks.clustering import ClusteringCell
+from hough_tui.experiments.chunks.initiation import InitiationCell
 from scenarios.experiments import ClusteringExperiment, Experiment, InitiationExperiment
 from scenarios.model import ScenarioSet
 from scenarios.sweeps import points

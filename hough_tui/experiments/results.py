@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from hough_tui import __version__
-from hough_tui.experiments.engine import Job
-from hough_tui.experiments.store import Run
+from hough_tui.experiments.engines.threads import Job
+from hough_tui.experiments.stores.folder import Run
 from scenarios.sweeps import SINGULAR
 
 Identity = tuple[str, str, tuple[str | None, ...], tuple[tuple[str, float], ...]]

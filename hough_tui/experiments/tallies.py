@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.intervals import mean_interval
+from hough_tui.experiments.cases import Row
 from hough_tui.experiments.columns import TrialColumns
-from hough_tui.experiments.work import Row
 
 if TYPE_CHECKING:
-    from hough_tui.experiments.chunks import InitiationCell
+    from hough_tui.experiments.chunks.initiation import InitiationCell
 
 
 def false_ratio(columns: TrialColumns) -> NDArray[np.float64]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hough_tui.experiments.results import Identity, identity
-from hough_tui.experiments.store import Run
+from hough_tui.experiments.stores.folder import Run
 from hough_tui.reports.layout import Column, Sheet
 from hough_tui.reports.metrics import field_name, metric
 from hough_tui.reports.numerals import NONE, Pair, aligned, as_given, fixed, intervals, number, pair, percent

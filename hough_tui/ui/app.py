@@ -101,8 +101,8 @@ class HoughApp(App[None]):
         from algorithms.compiled import is_cold
         from algorithms.errors import RequestError
         from hough_tui.ui.autosave import aside_file, read_aside, unsaved_work
-        from scenarios.bundled import bundled_paths
-        from scenarios.files import bundled_sets, load_set, locate
+        from scenarios.files.bundled import bundled_paths
+        from scenarios.files.set_files import bundled_sets, load_set, locate
 
         if self._config.keys:
             from hough_tui.ui.key_bindings import require_known

@@ -11,9 +11,9 @@ from typing import Any
 
 from algorithms.errors import RequestError
 from hough_tui.directories import state_directory
-from scenarios.atomic import replace_file
-from scenarios.files import parse_set, set_data
-from scenarios.marked_yaml import write
+from scenarios.files.atomic import replace_file
+from scenarios.files.marked_yaml import write
+from scenarios.files.set_files import parse_set, set_data
 from scenarios.model import ScenarioSet
 
 

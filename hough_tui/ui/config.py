@@ -46,8 +46,8 @@ def read_config() -> Config:
     if not path.exists():
         return Config()
     from algorithms.parameters import unknown
-    from scenarios.files import read_text
-    from scenarios.marked_yaml import read
+    from scenarios.files.marked_yaml import read
+    from scenarios.files.set_files import read_text
 
     document = read(read_text(path), str(path))
     data = document.data if document.data is not None else {}

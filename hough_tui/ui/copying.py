@@ -7,7 +7,7 @@ from datetime import datetime
 from textual.app import App
 
 from hough_tui.directories import data_directory
-from scenarios.atomic import replace_file
+from scenarios.files.atomic import replace_file
 
 
 def copy(app: App[object], text: str, name: str) -> None:

@@ -50,7 +50,7 @@ def _scene(dimensions: int) -> Scenario:
 def warm_clustering() -> None:
     """Load the kernels of scenes and of clustering."""
     from algorithms.clustering.parameters import Recommended
-    from hough_tui.experiments.scene_look import cluster_look, scene_picture
+    from hough_tui.inspection.scene import cluster_look, scene_picture
     from scenarios.scenes import ExtendedTarget, Scene, SceneRegion
 
     scene = Scene(
@@ -85,8 +85,8 @@ def _warm_initiators(scenario: Scenario) -> None:
 
 def _warm_prediction(scenario: Scenario) -> None:
     """Load what predictions need, and measure what votes cost: last, since it is wanted last."""
-    from hough_tui.experiments.forecast import recommendation
-    from hough_tui.experiments.vote_cost import vote_cost
+    from hough_tui.quantisation.forecast import recommendation
+    from hough_tui.quantisation.vote_cost import vote_cost
 
     for is_weighted in (False, True):
         vote_cost(is_weighted)

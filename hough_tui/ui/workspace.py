@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from algorithms.parameters import FieldError, Path, Problem, dotted, problems
 from scenarios.checks import inconsistencies
-from scenarios.files import save_set, set_data
+from scenarios.files.set_files import save_set, set_data
 from scenarios.model import ScenarioSet
 
 MOST_UNDO = 200

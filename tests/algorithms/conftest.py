@@ -9,7 +9,7 @@ import pytest
 
 from algorithms.plots import PlotChunk
 from algorithms.scoring import score
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 from scenarios.simulate import draw, truth
 from scenarios.world import World
 

@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from hough_tui.experiments.store import FolderStore
+from hough_tui.experiments.stores.folder import FolderStore
 
 BATCH = [sys.executable, "-c", "from hough_tui.cli import main; main()", "batch", "course-report"]
 

@@ -6,8 +6,8 @@ import pytest
 
 from algorithms.errors import RequestError
 from scenarios.checks import inconsistencies
-from scenarios.files import parse_set
-from scenarios.marked_yaml import write
+from scenarios.files.marked_yaml import write
+from scenarios.files.set_files import parse_set
 from scenarios.model import ScenarioSet
 
 SET = {

@@ -8,9 +8,9 @@ import pytest
 from algorithms.clustering.parameters import Recommended
 from algorithms.errors import RequestError
 from scenarios.detections import ResolvedWorld, draw_points
-from scenarios.files import load_set, parse_set
+from scenarios.files.marked_yaml import write
+from scenarios.files.set_files import load_set, parse_set
 from scenarios.front_end import clustered, dwell_offsets, every_point
-from scenarios.marked_yaml import write
 from scenarios.model import Scenario
 
 SENSOR = {

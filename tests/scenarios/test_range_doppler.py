@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 from scenarios.range_doppler import draw_scene
 from scenarios.scenes import ExtendedTarget, Scene
 

@@ -7,8 +7,8 @@ import pytest
 from algorithms.clustering.parameters import MODES
 from algorithms.errors import RequestError
 from scenarios.experiments import ClusteringExperiment, InitiationExperiment
-from scenarios.files import load_set, parse_set, set_data
-from scenarios.marked_yaml import write
+from scenarios.files.marked_yaml import write
+from scenarios.files.set_files import load_set, parse_set, set_data
 from scenarios.sweeps import points
 
 SET = {

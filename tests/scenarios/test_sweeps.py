@@ -6,7 +6,7 @@ import pytest
 
 from algorithms.parameters import FieldError
 from scenarios.experiments import InitiationExperiment
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 from scenarios.model import ScenarioSet
 from scenarios.sweeps import MOST_POINTS, parts_of, place, points
 

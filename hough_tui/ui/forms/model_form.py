@@ -18,12 +18,12 @@ from textual.widgets import Input, Static
 
 from algorithms.context import Unit
 from algorithms.parameters import Path, Problem, join
-from hough_tui.ui.forms.asked import Asked, Negotiation
 from hough_tui.ui.forms.edits import value_in
 from hough_tui.ui.forms.extended_target_table import ExtendedTargetTable
 from hough_tui.ui.forms.fields import FieldDescription, Kind, described, ordered, walk
 from hough_tui.ui.forms.list_table import ListTable
 from hough_tui.ui.forms.numbers import Unreadable
+from hough_tui.ui.forms.pending_edits import Asked, Negotiation
 from hough_tui.ui.forms.sensor_table import SensorTable
 from hough_tui.ui.forms.target_table import TargetTable
 from hough_tui.ui.forms.value_field import ValueField

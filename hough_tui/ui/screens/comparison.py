@@ -15,13 +15,13 @@ from textual.screen import ModalScreen
 from textual.widgets import Footer, Static
 
 from hough_tui.directories import data_directory
-from hough_tui.experiments.store import Run
+from hough_tui.experiments.stores.folder import Run
 from hough_tui.reports.comparison import METRICS, compare, comparison_sheet
 from hough_tui.reports.documents import sheet_markdown
 from hough_tui.reports.layout import Sheet
 from hough_tui.reports.metrics import leading_metric, metric
 from hough_tui.ui.widgets.rate_grid import RateGrid
-from scenarios.atomic import replace_file
+from scenarios.files.atomic import replace_file
 
 
 class ComparisonScreen(ModalScreen[None]):

@@ -15,7 +15,7 @@ from textual.screen import ModalScreen
 from textual.widgets import Button, Input, RadioButton, RadioSet, Static
 
 from hough_tui.reports.documents import FORMATS
-from scenarios.atomic import replace_file
+from scenarios.files.atomic import replace_file
 
 Document = Mapping[str, Any]
 

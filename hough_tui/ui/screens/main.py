@@ -13,7 +13,7 @@ from textual.containers import Container, Horizontal
 from textual.widget import Widget
 from textual.widgets import TabbedContent, TabPane
 
-from hough_tui.ui.screens.attentive import AttentiveScreen
+from hough_tui.ui.screens.relayout_workaround import AttentiveScreen
 from hough_tui.ui.widgets.key_line import KeyLine
 from hough_tui.ui.widgets.status_line import StatusLine
 

@@ -10,7 +10,7 @@ from textual.containers import Vertical
 from textual.screen import ModalScreen
 from textual.widgets import Footer, Static
 
-from hough_tui.ui.views.shown_run import cell_words
+from hough_tui.ui.runs.shown_run import cell_words
 from hough_tui.ui.widgets.trial_list import TrialList
 from hough_tui.ui.widgets.trial_table import Rows, TrialTable
 

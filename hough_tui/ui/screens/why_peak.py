@@ -17,7 +17,7 @@ from textual.widgets import Static
 from algorithms.hough.inspection import neighbourhood, voters, votes_spread
 
 if TYPE_CHECKING:
-    from hough_tui.experiments.look import TrialLook
+    from hough_tui.inspection.trial import TrialLook
 
 RADIUS = 4
 """The neighbourhood that is printed has 2·4 + 1 cells a side, as the thesis prints it."""

@@ -14,7 +14,7 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 from algorithms.clustering.clusters import NONE
-from hough_tui.experiments.clustering import document, plot_rows
+from hough_tui.recorded.clustering import document, plot_rows
 from hough_tui.reports.clusters import Document, step_sheet, verdict_words
 from hough_tui.reports.documents import csv_text
 from hough_tui.reports.metrics import field_name
@@ -27,7 +27,7 @@ from hough_tui.ui.widgets.cluster_plane import ClusterPlane
 from hough_tui.ui.widgets.step_list import StepList
 
 if TYPE_CHECKING:
-    from hough_tui.experiments.scene_look import ClusterLook
+    from hough_tui.inspection.scene import ClusterLook
     from hough_tui.ui.widgets.cluster_scene import StepScene
 
 

@@ -12,7 +12,7 @@ from hough_tui.ui.widgets.cluster_scene import MOST_ELLIPSES, ClusterScene, Step
 
 if TYPE_CHECKING:
     from algorithms.clustering.tree import Step
-    from hough_tui.experiments.scene_look import ClusterLook
+    from hough_tui.inspection.scene import ClusterLook
 
 UNIT = "cells"
 """Of range and of Doppler in a scene."""

@@ -17,10 +17,10 @@ from textual.worker import get_current_worker
 from algorithms.clustering.parameters import MODES, Clustering
 from algorithms.errors import RequestError
 from algorithms.parameters import Problem
-from hough_tui.experiments.scene_look import ClusterLook, cluster_look, scene_picture, scene_seed
+from hough_tui.inspection.scene import ClusterLook, cluster_look, scene_picture, scene_seed
 from hough_tui.ui.messages import ElementAdded, FieldEdited, SetShown
 from hough_tui.ui.naming import free_name
-from hough_tui.ui.screens.choice import Choice
+from hough_tui.ui.screens.choose_one import Choice
 from hough_tui.ui.views.cluster_panel import ClusterPanel
 from hough_tui.ui.views.new_entries import NEW_SCENE, clustering_data
 from hough_tui.ui.widgets.entry_form import EntryForm

@@ -19,16 +19,16 @@ from algorithms.errors import RequestError
 from algorithms.initiators.accumulating import AccumulatingParameters
 from algorithms.initiators.registry import initiators
 from algorithms.parameters import Problem
-from hough_tui.experiments.choice import ignores_z, why_not_in_plane
 from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited
 from hough_tui.ui.naming import free_name
-from hough_tui.ui.screens.choice import Choice
+from hough_tui.ui.screens.choose_one import Choice
 from hough_tui.ui.widgets.prediction_density import PredictionDensity
 from hough_tui.ui.widgets.prediction_panel import PredictionPanel
 from scenarios.entries import InitiatorEntry
-from scenarios.files import set_data
+from scenarios.files.set_files import set_data
 from scenarios.model import Scenario, ScenarioSet
+from scenarios.selection import ignores_z, why_not_in_plane
 
 WIDE, MEDIUM = 118, 88
 """Columns from which list, form and prediction stand side by side, and from which the prediction stands
@@ -239,7 +239,7 @@ class InitiatorView(Widget):
                 markup=False,
             )
             return
-        from hough_tui.experiments.adoption import adopt
+        from hough_tui.quantisation.apply_advice import adopt
 
         entry = self._given.initiators[self._index]
         adoption = adopt(self._given, advice, [entry.name])

@@ -14,13 +14,13 @@ from textual.worker import get_current_worker
 
 from algorithms.errors import RequestError
 from algorithms.parameters import Parameters
-from hough_tui.experiments.choice import known_stages, seed_of
-from hough_tui.experiments.look import Picture, TrialLook, look, picture
-from hough_tui.experiments.plot_sources import Stage
+from hough_tui.experiments.chunks.plot_sources import Stage
+from hough_tui.inspection.trial import Picture, TrialLook, look, picture
 from hough_tui.ui.views.look_panel import LookPanel
 from scenarios.entries import ClusteringEntry, InitiatorEntry
 from scenarios.experiments import MatchCriterion
 from scenarios.model import Scenario, ScenarioSet
+from scenarios.selection import known_stages, seed_of
 
 if TYPE_CHECKING:
     from hough_tui.ui.messages import TrialOpened

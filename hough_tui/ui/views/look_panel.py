@@ -17,7 +17,6 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 from algorithms.hough.inspection import columns_of, voters
-from hough_tui.experiments.choice import ignores_z
 from hough_tui.reports.documents import track_csv
 from hough_tui.reports.metrics import field_name
 from hough_tui.reports.numerals import as_given
@@ -41,9 +40,10 @@ from hough_tui.ui.widgets.pair_votes import PairVotes
 from hough_tui.ui.widgets.plane import Plane
 from hough_tui.ui.widgets.scatter import NOTHING
 from hough_tui.ui.widgets.track_grid import TrackGrid
+from scenarios.selection import ignores_z
 
 if TYPE_CHECKING:
-    from hough_tui.experiments.look import Picture, TrialLook
+    from hough_tui.inspection.trial import Picture, TrialLook
     from hough_tui.ui.widgets.plane_scene import PlaneScene
     from scenarios.model import Scenario
 

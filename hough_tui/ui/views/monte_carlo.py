@@ -16,10 +16,10 @@ from textual.widgets import Static
 
 from algorithms.parameters import Problem
 from hough_tui.ui.drawing.shortening import BETWEEN
+from hough_tui.ui.runs.pace import Pace, duration
+from hough_tui.ui.runs.run_controller import Asked, Ended, Event, Filled, Running, Started, keep
+from hough_tui.ui.runs.shown_run import LiveRun
 from hough_tui.ui.screens.question import telling
-from hough_tui.ui.views.pace import Pace, duration
-from hough_tui.ui.views.running import Asked, Ended, Event, Filled, Running, Started, keep
-from hough_tui.ui.views.shown_run import LiveRun
 from hough_tui.ui.widgets.experiment_form import ExperimentForm
 from hough_tui.ui.widgets.rate_panel import RatePanel
 from hough_tui.ui.widgets.run_form import RunForm, asked_name, asked_text, asked_words

@@ -14,13 +14,13 @@ from textual.widget import Widget
 from textual.widgets import DataTable, Static
 
 from algorithms.errors import RequestError
-from hough_tui.experiments.store import FolderStore, Run
+from hough_tui.experiments.stores.folder import FolderStore, Run
 from hough_tui.ui.drawing.shortening import ranked
+from hough_tui.ui.runs.run_summaries import KeptSummary, summaries
+from hough_tui.ui.runs.shown_run import KeptRun
 from hough_tui.ui.screens.comparison import ComparisonScreen
 from hough_tui.ui.screens.export import Document, ExportScreen
 from hough_tui.ui.screens.question import Question, telling
-from hough_tui.ui.views.kept import KeptSummary, summaries
-from hough_tui.ui.views.shown_run import KeptRun
 from hough_tui.ui.widgets.caption import Caption
 from hough_tui.ui.widgets.rate_panel import RatePanel
 from hough_tui.ui.widgets.run_list import RunList

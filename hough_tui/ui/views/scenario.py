@@ -14,8 +14,7 @@ from textual.widget import Widget
 from textual.worker import get_current_worker
 
 from algorithms.parameters import Problem
-from hough_tui.experiments.choice import seed_of
-from hough_tui.experiments.look import Picture, picture
+from hough_tui.inspection.trial import Picture, picture
 from hough_tui.ui.drawing.shortening import Part
 from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.messages import SetShown
@@ -23,6 +22,7 @@ from hough_tui.ui.views.trial_scenes import picture_scene
 from hough_tui.ui.widgets.caption import Caption
 from hough_tui.ui.widgets.plane import Plane
 from scenarios.model import Scenario, ScenarioSet
+from scenarios.selection import seed_of
 
 DEBOUNCE = 0.03
 """Seconds without a further change before the picture is drawn anew."""

@@ -18,7 +18,7 @@ from scenarios.sensors import PolarSensor
 
 if TYPE_CHECKING:
     from algorithms.hough.voting import Accumulator
-    from hough_tui.experiments.look import Picture, TrialLook
+    from hough_tui.inspection.trial import Picture, TrialLook
     from scenarios.model import Scenario
 
 STATES = {FALSE: "false", FINDER: "found", DUPLICATE: "duplicate"}

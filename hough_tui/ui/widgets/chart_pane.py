@@ -10,12 +10,12 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.widgets import Select
 
+from hough_tui.experiments.cases import Row
 from hough_tui.experiments.tallies import false_ratio
-from hough_tui.experiments.work import Row
 from hough_tui.reports.charts import rate_chart
 from hough_tui.reports.metrics import KNOWN
 from hough_tui.reports.numerals import number
-from hough_tui.ui.views.shown_run import ShownRun, cell_words
+from hough_tui.ui.runs.shown_run import ShownRun, cell_words
 from hough_tui.ui.widgets.rate_plot import RatePlot
 from hough_tui.ui.widgets.trial_chart import trial_chart
 

@@ -8,9 +8,9 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from hough_tui.experiments.scene_chunks import ClusterColumns
+from hough_tui.experiments.chunks.clustering import ClusterColumns
 from hough_tui.reports.numerals import fixed, number
-from hough_tui.ui.views.shown_run import RowTrials
+from hough_tui.ui.runs.shown_run import RowTrials
 from hough_tui.ui.widgets.trial_table import PLAIN, QUIET, WRONG, Rows, TrialColumn, TrialTable, by_number
 
 

@@ -12,7 +12,7 @@ from hough_tui.ui.drawing.shortening import Part
 from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.messages import ElementAdded, ElementRemoved
 from hough_tui.ui.naming import free_name
-from hough_tui.ui.screens.choice import Choice
+from hough_tui.ui.screens.choose_one import Choice
 from hough_tui.ui.widgets.caption import Caption
 from hough_tui.ui.widgets.element_form import ElementForm
 from scenarios.experiments import Experiment

@@ -20,7 +20,7 @@ from hough_tui.ui.drawing.viewport import Limits, Viewport
 from hough_tui.ui.widgets.chart import Chart, Drawn
 
 if TYPE_CHECKING:
-    from hough_tui.experiments.forecast import VotePicture
+    from hough_tui.quantisation.forecast import VotePicture
 
 EDGE, CURVE, HOME, WORDS, HOME_WORDS = 1, 2, 3, 4, 5
 """Layers, from the lowest."""

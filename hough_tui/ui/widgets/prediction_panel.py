@@ -21,8 +21,8 @@ from hough_tui.ui.widgets.prediction_table import Compared, PredictionTable
 
 if TYPE_CHECKING:
     from algorithms.quantisation.advisor import Advice
-    from hough_tui.experiments.forecast import Forecast, VotePicture
-    from hough_tui.experiments.vote_cost import VoteCost
+    from hough_tui.quantisation.forecast import Forecast, VotePicture
+    from hough_tui.quantisation.vote_cost import VoteCost
     from scenarios.entries import InitiatorEntry
     from scenarios.model import Scenario
 
@@ -178,8 +178,8 @@ class PredictionPanel(VerticalScroll, can_focus=False, inherit_bindings=False):
     def _predict(self, asked: Asked) -> None:
         """Predict, and learn what votes cost on this machine."""
         from algorithms.errors import RequestError
-        from hough_tui.experiments.forecast import forecast
-        from hough_tui.experiments.vote_cost import known_cost, vote_cost
+        from hough_tui.quantisation.forecast import forecast
+        from hough_tui.quantisation.vote_cost import known_cost, vote_cost
 
         worker = get_current_worker()
         try:
@@ -197,7 +197,7 @@ class PredictionPanel(VerticalScroll, can_focus=False, inherit_bindings=False):
     def _advise(self, asked: Asked) -> None:
         """Work the recommendation out."""
         from algorithms.errors import RequestError
-        from hough_tui.experiments.forecast import recommendation
+        from hough_tui.quantisation.forecast import recommendation
 
         found: Advice | str
         try:
@@ -241,7 +241,7 @@ class PredictionPanel(VerticalScroll, can_focus=False, inherit_bindings=False):
 
     def _show_figures(self, found: Forecast, advice: Advice | str | None) -> list[str]:
         """Show density and figures; return what is to be said in words."""
-        from hough_tui.experiments.forecast import recommended
+        from hough_tui.quantisation.forecast import recommended
 
         unit = found.scenario.unit.value
         density = self.query_one(PredictionDensity)

@@ -14,8 +14,8 @@ from textual.widget import Widget
 from hough_tui.reports.numerals import as_given, durations, percent, significant
 
 if TYPE_CHECKING:
-    from hough_tui.experiments.forecast import Outlook
-    from hough_tui.experiments.vote_cost import VoteCost
+    from hough_tui.quantisation.forecast import Outlook
+    from hough_tui.quantisation.vote_cost import VoteCost
 
 COLUMN = 13
 """Cells of a column of figures."""

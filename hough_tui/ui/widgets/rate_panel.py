@@ -18,23 +18,23 @@ from textual.widgets import DataTable, Static
 
 from algorithms.errors import RequestError
 from hough_tui.directories import data_directory
-from hough_tui.experiments.chunks import InitiationCell
-from hough_tui.experiments.scene_chunks import ClusteringCell
-from hough_tui.experiments.work import Cell, Row
+from hough_tui.experiments.cases import Cell, Row
+from hough_tui.experiments.chunks.clustering import ClusteringCell
+from hough_tui.experiments.chunks.initiation import InitiationCell
 from hough_tui.reports.documents import markdown_text
 from hough_tui.reports.rates import rate_sheets
 from hough_tui.ui.messages import TrialOpened
+from hough_tui.ui.runs.shown_run import ShownRun
 from hough_tui.ui.screens.export import Document, ExportScreen
 from hough_tui.ui.screens.question import telling
 from hough_tui.ui.screens.trials import TrialsScreen
-from hough_tui.ui.views.shown_run import ShownRun
 from hough_tui.ui.widgets.chart_pane import ChartPane
 from hough_tui.ui.widgets.cluster_trials import ClusterTrials
 from hough_tui.ui.widgets.rate_grid import RateGrid
 from hough_tui.ui.widgets.rate_plot import RatePlot
 from hough_tui.ui.widgets.track_trials import TrackTrials
 from hough_tui.ui.widgets.trial_table import Rows, TrialTable
-from scenarios.atomic import replace_file
+from scenarios.files.atomic import replace_file
 
 TALL, WIDE, BROAD = 27, 120, 90
 """Lines from which table and chart stand above each other; columns of the terminal, and of the panel,

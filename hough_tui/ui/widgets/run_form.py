@@ -13,7 +13,7 @@ from textual.widgets import Button, Input, Select, Static
 
 from hough_tui.reports.metrics import field_name
 from hough_tui.reports.numerals import as_given
-from hough_tui.ui.views.running import Asked
+from hough_tui.ui.runs.run_controller import Asked
 from hough_tui.ui.widgets.run_field import RunField
 from scenarios.experiments import Experiment
 from scenarios.model import ScenarioSet

@@ -7,7 +7,7 @@ from typing import ClassVar
 from textual.binding import Binding, BindingType
 from textual.message import Message
 
-from hough_tui.ui.views.kept import KeptSummary, summary_columns
+from hough_tui.ui.runs.run_summaries import KeptSummary, summary_columns
 from hough_tui.ui.widgets.vim_table import VimTable, cell_text
 
 

@@ -14,7 +14,7 @@ from textual.widgets import DataTable
 from algorithms.scoring import DUPLICATE, FALSE, FINDER
 
 if TYPE_CHECKING:
-    from hough_tui.experiments.look import TrialLook
+    from hough_tui.inspection.trial import TrialLook
 
 MOST_ROWS = 500
 """Weaker tracks than these are counted, not listed."""

@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from hough_tui.ui.views.shown_run import RowTrials
+from hough_tui.ui.runs.shown_run import RowTrials
 
 Rows = NDArray[np.int64]
 

@@ -11,7 +11,7 @@ from algorithms.initiators.registry import initiator
 from algorithms.parameters import validated
 from algorithms.plots import PlotChunk
 from algorithms.scoring import Criterion, score
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 from scenarios.model import Scenario
 from scenarios.simulate import draw, truth
 from scenarios.world import World

@@ -13,7 +13,7 @@ from algorithms.initiators.registry import initiator
 from algorithms.parameters import validated
 from algorithms.plots import PlotChunk
 from algorithms.space.noise import LEAST_DEVIATION, covariances
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 from scenarios.simulate import draw
 from scenarios.world import World
 

@@ -8,7 +8,7 @@ import pytest
 
 from algorithms.initiators.registry import initiator
 from algorithms.parameters import validated
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 from scenarios.simulate import draw
 from scenarios.world import World
 

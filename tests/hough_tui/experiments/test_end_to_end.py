@@ -6,15 +6,15 @@ import json
 import numpy as np
 import pytest
 
-from hough_tui.experiments.choice import chosen_clustering
-from hough_tui.experiments.engine import Job
-from hough_tui.experiments.look import look, picture
+from hough_tui.experiments.chunks.plot_sources import plots_of
+from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.plan import plan_run
-from hough_tui.experiments.plot_sources import plots_of
+from hough_tui.inspection.trial import look, picture
 from hough_tui.reports.rates import rate_sheets
 from scenarios.detections import ResolvedWorld, draw_points
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 from scenarios.front_end import clustered
+from scenarios.selection import chosen_clustering
 
 TRIALS = 24
 

@@ -1,9 +1,9 @@
 import pytest
 
 from algorithms.errors import RequestError
+from hough_tui.experiments.cases import LARGEST_CHUNK
 from hough_tui.experiments.plan import plan_run
-from hough_tui.experiments.work import LARGEST_CHUNK
-from scenarios.files import load_set, parse_set
+from scenarios.files.set_files import load_set, parse_set
 
 
 def test_cells_stand_in_the_order_of_the_set_with_the_swept_key_as_written():

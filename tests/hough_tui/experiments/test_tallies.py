@@ -5,7 +5,7 @@ from algorithms.intervals import wilson
 from hough_tui.experiments.columns import TrialColumns
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.tallies import tally
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 
 
 @pytest.fixture

@@ -13,11 +13,11 @@ from rich.console import Console
 from algorithms.clustering.modes import cluster
 from algorithms.clustering.parameters import CorrectedPatent, Recommended
 from algorithms.clustering.points import Points
-from hough_tui.experiments.clustering import cluster_recording, document
+from hough_tui.recorded.clustering import cluster_recording, document
 from hough_tui.reports.charts import cluster_chart
 from hough_tui.reports.clusters import cluster_table, step_table
-from scenarios.files import load_set
-from scenarios.point_files import PointRecording
+from scenarios.files.point_files import PointRecording
+from scenarios.files.set_files import load_set
 from scenarios.range_doppler import draw_scene
 
 EXTENTS = {"range_extent": 16.0, "doppler_extent": 12.0}

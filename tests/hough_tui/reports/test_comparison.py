@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from algorithms.intervals import mean_interval, wilson
-from hough_tui.experiments.engine import Job
+from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import result
-from hough_tui.experiments.store import Run
+from hough_tui.experiments.stores.folder import Run
 from hough_tui.reports.comparison import METRICS, compare, comparison_sheet, difference
 from hough_tui.reports.documents import sheet_markdown
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 
 from hough_tui.ui.autosave import aside_file, forget, keep_aside, read_aside, unsaved_work
 from hough_tui.ui.workspace import Workspace
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 
 
 @pytest.fixture

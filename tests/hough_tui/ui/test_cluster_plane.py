@@ -10,7 +10,7 @@ from textual.app import App
 
 from algorithms.clustering.ellipse import Ellipse
 from algorithms.clustering.parameters import CorrectedPatent, Dbscan, Recommended
-from hough_tui.experiments.scene_look import cluster_look, scene_picture
+from hough_tui.inspection.scene import cluster_look, scene_picture
 from hough_tui.ui.drawing.palette import DARK
 from hough_tui.ui.drawing.viewport import Limits, Viewport
 from hough_tui.ui.views.cluster_scenes import cluster_scene, step_scene
@@ -27,7 +27,7 @@ from hough_tui.ui.widgets.cluster_scene import (
     colour_of,
     legend,
 )
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 from tests.hough_tui.ui.test_plane import at, place, screen_lines, text
 
 RECOMMENDED = Recommended(range_extent=16.0, doppler_extent=12.0)

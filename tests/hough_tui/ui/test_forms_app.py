@@ -11,7 +11,7 @@ from algorithms.parameters import FieldError, Path
 from hough_tui.ui.forms.model_form import ModelForm
 from hough_tui.ui.messages import ElementAdded, ElementRemoved, FieldEdited, FieldUnreadable
 from hough_tui.ui.workspace import Workspace
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 
 SCENARIO, SEQUENTIAL, MODIFIED = ("scenarios", 0), ("initiators", 1), ("initiators", 2)
 EXPERIMENT = ("experiments", 0)

@@ -16,7 +16,7 @@ from hough_tui.ui.screens.explanation import explained
 from scenarios.clutter import ExactClutter, PoissonClutter, Region
 from scenarios.entries import entry_model
 from scenarios.experiments import InitiationExperiment, MatchCriterion
-from scenarios.files import bundled_paths, load_set
+from scenarios.files.set_files import bundled_paths, load_set
 from scenarios.model import Scenario, ScenarioSet
 from scenarios.sensors import CartesianSensor
 from scenarios.targets import Target

@@ -41,11 +41,11 @@ HoughApp("course-report", read_config())
 COMPILER = {"llvmlite", "numba", "scipy"}
 READING = """
 import hough_tui.ui.views.scenario
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 given = load_set("course-report")
 """
 DRAWING = """
-from hough_tui.experiments.look import picture
+from hough_tui.inspection.trial import picture
 picture(given.scenarios[0], 1, 0)
 """
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hough_tui.experiments.plan import plan_run
-from hough_tui.experiments.scene_look import cluster_look, scene_picture
+from hough_tui.inspection.scene import cluster_look, scene_picture
 from hough_tui.ui.views.cluster_panel import ClusterPanel
 from hough_tui.ui.widgets.cluster_plane import ClusterPlane
 from hough_tui.ui.widgets.step_list import StepList

@@ -3,11 +3,11 @@
 import pytest
 from textual.widgets import Button
 
-from hough_tui.experiments.store import FolderStore
+from hough_tui.experiments.stores.folder import FolderStore
 from hough_tui.ui.autosave import unsaved_work
 from hough_tui.ui.forms.list_table import ListTable
 from hough_tui.ui.widgets.plane import Plane
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 
 STEP = ("initiators", 0, "grid", "rho_step")
 BINS = ("initiators", 0, "grid", "theta_bins")

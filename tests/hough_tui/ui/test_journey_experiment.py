@@ -2,7 +2,7 @@
 
 from textual.widgets import Select
 
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 
 BASE = ("experiments",)
 

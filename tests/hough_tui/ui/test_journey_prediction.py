@@ -8,12 +8,12 @@ from textual.widgets import Static
 
 from algorithms.quantisation.advisor import advise
 from algorithms.quantisation.prediction import predict
-from hough_tui.experiments.designs import Demands, question_of
+from hough_tui.quantisation.designs import Demands, question_of
 from hough_tui.ui.widgets.false_cell_field import FalseCellField
 from hough_tui.ui.widgets.prediction_density import PredictionDensity
 from hough_tui.ui.widgets.prediction_panel import PredictionPanel
 from hough_tui.ui.widgets.prediction_table import PredictionTable
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 
 ENTRY = ("initiators", 0)
 STEP = (*ENTRY, "grid", "rho_step")

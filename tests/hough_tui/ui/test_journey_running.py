@@ -1,6 +1,6 @@
 """Runs that are cancelled, or left."""
 
-from hough_tui.experiments.store import FolderStore
+from hough_tui.experiments.stores.folder import FolderStore
 from hough_tui.ui.widgets.rate_grid import RateGrid
 
 MANY = "200000"

@@ -2,11 +2,11 @@
 
 from textual.widgets import Input
 
-from hough_tui.experiments.store import FolderStore
+from hough_tui.experiments.stores.folder import FolderStore
 from hough_tui.ui.widgets.heatmap import Heatmap
 from hough_tui.ui.widgets.rate_grid import RateGrid
 from hough_tui.ui.widgets.trial_list import TrialList
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 
 STEP = ("initiators", 0, "grid", "rho_step")
 TRIALS = 40

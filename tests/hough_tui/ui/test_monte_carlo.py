@@ -8,8 +8,8 @@ import pytest
 from textual.app import App
 from textual.widgets import Input, Select
 
-from hough_tui.experiments import chunks
-from hough_tui.experiments.store import FolderStore
+from hough_tui.experiments.chunks import initiation as chunks
+from hough_tui.experiments.stores.folder import FolderStore
 from hough_tui.ui.messages import TrialOpened
 from hough_tui.ui.screens.question import Question
 from hough_tui.ui.screens.trials import TrialsScreen
@@ -19,7 +19,7 @@ from hough_tui.ui.widgets.rate_panel import RatePanel
 from hough_tui.ui.widgets.rate_plot import RatePlot
 from hough_tui.ui.widgets.run_line import RunLine
 from hough_tui.ui.widgets.trial_list import TrialList
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 
 pytestmark = pytest.mark.usefixtures("data_home")
 

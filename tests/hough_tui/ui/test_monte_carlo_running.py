@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from algorithms.errors import RequestError
-from hough_tui.experiments.engine import Job
+from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import result
-from hough_tui.experiments.store import FolderStore, Run
-from hough_tui.ui.views.pace import Pace, duration
-from hough_tui.ui.views.running import Asked, Ended, Filled, Running, Started
-from hough_tui.ui.views.shown_run import KeptRun, LiveRun
-from scenarios.files import load_set
+from hough_tui.experiments.stores.folder import FolderStore, Run
+from hough_tui.ui.runs.pace import Pace, duration
+from hough_tui.ui.runs.run_controller import Asked, Ended, Filled, Running, Started
+from hough_tui.ui.runs.shown_run import KeptRun, LiveRun
+from scenarios.files.set_files import load_set
 
 pytestmark = pytest.mark.usefixtures("data_home")
 

@@ -9,13 +9,13 @@ from types import SimpleNamespace
 import pytest
 from pytest_textual_snapshot import SVGImageExtension
 
-import hough_tui.experiments.chunks as chunks
-import hough_tui.experiments.look as looking
-import hough_tui.experiments.plot_sources as plot_sources
-import hough_tui.experiments.scene_chunks as scene_chunks
-import hough_tui.experiments.store as store
-import hough_tui.experiments.vote_cost as vote_cost
-from hough_tui.experiments.engine import Job
+import hough_tui.experiments.chunks.clustering as scene_chunks
+import hough_tui.experiments.chunks.initiation as chunks
+import hough_tui.experiments.chunks.plot_sources as plot_sources
+import hough_tui.experiments.stores.folder as store
+import hough_tui.inspection.trial as looking
+import hough_tui.quantisation.vote_cost as vote_cost
+from hough_tui.experiments.engines.threads import Job
 from hough_tui.ui.views.cluster_panel import ClusterPanel
 from hough_tui.ui.widgets.heatmap import Heatmap
 from hough_tui.ui.widgets.pair_votes import PairVotes

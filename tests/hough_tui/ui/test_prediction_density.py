@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.parameters import replaced
-from hough_tui.experiments.forecast import forecast
+from hough_tui.quantisation.forecast import forecast
 from hough_tui.ui.drawing.palette import DARK
 from hough_tui.ui.drawing.viewport import Limits, Viewport
 from hough_tui.ui.widgets.prediction_density import (
@@ -21,7 +21,7 @@ from hough_tui.ui.widgets.prediction_density import (
     painted,
     styles,
 )
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 from scenarios.sweeps import place
 
 BITS = {

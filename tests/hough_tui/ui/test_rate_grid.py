@@ -9,11 +9,11 @@ from textual.app import App
 
 from hough_tui.experiments.columns import TrialColumns
 from hough_tui.experiments.plan import plan_run
-from hough_tui.ui.views.shown_run import RowTrials
+from hough_tui.ui.runs.shown_run import RowTrials
 from hough_tui.ui.widgets.rate_grid import RateGrid, rate_columns, sort_value
 from hough_tui.ui.widgets.track_trials import TrackTrials
 from hough_tui.ui.widgets.trial_list import TrialList
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 
 
 @pytest.fixture(scope="module")

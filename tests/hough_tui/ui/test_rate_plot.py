@@ -10,15 +10,15 @@ import pytest
 from textual.app import App
 from textual.widgets import Select
 
-from hough_tui.experiments.engine import Job
+from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.plan import plan_run
 from hough_tui.reports.charts import ESCAPES
-from hough_tui.ui.screens.attentive import AttentiveScreen
-from hough_tui.ui.views.shown_run import LiveRun
+from hough_tui.ui.runs.shown_run import LiveRun
+from hough_tui.ui.screens.relayout_workaround import AttentiveScreen
 from hough_tui.ui.widgets.chart_pane import BY_TRIAL, ChartPane
 from hough_tui.ui.widgets.rate_plot import RatePlot
 from hough_tui.ui.widgets.trial_chart import trial_chart
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 
 
 @pytest.fixture(scope="module")

@@ -9,10 +9,10 @@ import pytest
 from textual.app import App
 from textual.widgets import Button, Input, RadioButton, Static
 
-from hough_tui.experiments.engine import Job
+from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import result
-from hough_tui.experiments.store import FolderStore
+from hough_tui.experiments.stores.folder import FolderStore
 from hough_tui.ui.screens.comparison import ComparisonScreen
 from hough_tui.ui.screens.export import ExportScreen
 from hough_tui.ui.screens.question import Question
@@ -23,7 +23,7 @@ from hough_tui.ui.widgets.rate_grid import RateGrid
 from hough_tui.ui.widgets.rate_panel import RatePanel
 from hough_tui.ui.widgets.run_list import RunList
 from hough_tui.ui.widgets.trial_list import TrialList
-from scenarios.files import load_set
+from scenarios.files.set_files import load_set
 
 pytestmark = pytest.mark.usefixtures("data_home")
 

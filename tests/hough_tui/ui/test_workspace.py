@@ -5,7 +5,7 @@ import pytest
 from algorithms.errors import RequestError
 from algorithms.parameters import FieldError
 from hough_tui.ui.workspace import MOST_UNDO, Workspace
-from scenarios.files import load_set, parse_set
+from scenarios.files.set_files import load_set, parse_set
 
 SET = """\
 schema: 1

@@ -1,0 +1,1 @@
+"""Chunks: consecutive trials of a cell, drawn, worked on and scored together."""

@@ -1,0 +1,207 @@
+"""The local engine: chunks of trials on threads, into per-trial columns.
+
+A chunk is a fixed range of trials, its kernels run without the interpreter's lock, and it
+writes its own rows of the columns: neither the number of workers nor their order, nor the parts in
+which a chunk that takes long is done, can change a figure. An initiator in plain Python would hold
+the lock, so its trials go to processes.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import wait as wait_for
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.errors import WorkFailedError
+from hough_tui.experiments.cases import Cell, Columns, Row
+from hough_tui.experiments.engines.process_worker import begin_worker
+from hough_tui.experiments.plan import Plan
+
+PART_SECONDS = 0.05
+"""About how long a worker goes on before it looks whether the run is cancelled; one trial may last longer."""
+
+LEAST_SECONDS = 1e-6
+"""The least time that a part is taken to last, where the clock is coarse."""
+
+
+@dataclass(slots=True)
+class Progress:
+    """How far a run is; the engine writes it, anyone may read it at any time.
+
+    Attributes
+    ----------
+    done, total : int64 (cells,), trials finished and asked for
+    started : `time.monotonic()` of the start
+    """
+
+    done: NDArray[np.int64]
+    total: NDArray[np.int64]
+    started: float = field(default_factory=time.monotonic)
+
+    @property
+    def cells_done(self) -> int:
+        """Number of finished cells."""
+        return int((self.done == self.total).sum())
+
+
+class Job:
+    """A run that is under way.
+
+    Start it with `Job(plan, workers)`; look at `progress`, `cancel` it, and take `rows` at any
+    time or after `wait`.
+    """
+
+    def __init__(self, plan: Plan, workers: int | None = None) -> None:
+        self.plan = plan
+        self.workers = workers or available_workers()
+        self.columns = tuple(cell.empty_columns() for cell in plan.cells)
+        totals = np.array([cell.experiment.trials for cell in plan.cells], dtype=np.int64)
+        self.progress = Progress(np.zeros_like(totals), totals)
+        self._finished = tuple(np.zeros(cell.experiment.trials, np.bool_) for cell in plan.cells)
+        self._seconds = np.zeros(len(plan.cells))
+        self._prepared: dict[int, Any] = {}
+        self._ended: float | None = None
+        self._cancelled = threading.Event()
+        self._lock = threading.Lock()
+        self._chunks = _chunks(plan)
+        self._pace: dict[int, float] = {}
+        self._cold = list(plan.draws)
+        # Processes come first: starting them once threads are busy is slow, and unsafe by fork.
+        self._processes = _processes(plan, self.workers)
+        self._threads = ThreadPoolExecutor(self.workers, thread_name_prefix="chunks")
+        self._futures: list[Future[None]] = [self._threads.submit(self._work) for _ in range(self.workers)]
+
+    def cancel(self) -> None:
+        """Ask the workers to stop after the stage that they are in."""
+        self._cancelled.set()
+
+    def wait(self, timeout: float | None = None) -> bool:
+        """Wait for the end of the run; return whether it has ended.
+
+        Raises
+        ------
+        Exception
+            What a worker failed with.
+        """
+        pending = wait_for(self._futures, timeout).not_done
+        if pending:
+            return False
+        self._threads.shutdown()
+        if self._processes is not None:
+            self._processes.shutdown(cancel_futures=True)
+        self._ended = self._ended or time.monotonic()
+        for future in self._futures:
+            future.result()
+        return True
+
+    @property
+    def seconds(self) -> float:
+        """Wall-clock time since the start; once the run has ended, of the run."""
+        return (self._ended or time.monotonic()) - self.progress.started
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether every trial of every cell is done."""
+        return bool((self.progress.done == self.progress.total).all())
+
+    def finished(self) -> Iterator[tuple[Cell, Columns, float]]:
+        """Yield the cells that have finished trials, with the columns of these and their seconds."""
+        for cell, columns, finished, seconds in zip(
+            self.plan.cells, self.columns, self._finished, self._seconds, strict=True
+        ):
+            # The workers go on meanwhile: the mask must be the same for every column.
+            done = finished.copy()
+            if done.all():
+                yield cell, columns, float(seconds)
+            elif done.any():
+                yield cell, columns.part(done), float(seconds)
+
+    def rows(self) -> list[Row]:
+        """Return the rows of the cells that have finished trials, over these trials."""
+        return [cell.tally(columns, seconds) for cell, columns, seconds in self.finished()]
+
+    def _work(self) -> None:
+        try:
+            with self._lock:
+                self._warm()
+            while not self._cancelled.is_set():
+                with self._lock:
+                    chunk = next(self._chunks, None)
+                if chunk is None:
+                    return
+                self._run(*chunk)
+        except BaseException:
+            self.cancel()
+            raise
+
+    def _warm(self) -> None:
+        """Load, or compile, the kernels that the plan needs, so that no trial is charged for it."""
+        while self._cold and not self._cancelled.is_set():
+            shared = self._cold.pop()
+            for _ in shared.run(shared.prepared(), 0, 1, self._plain):
+                continue
+
+    def _run(self, index: int, first: int, trials: int) -> None:
+        """Do a chunk, in parts that are soon done: where most cells are tracks, a trial takes long."""
+        end = first + trials
+        while first < end and not self._cancelled.is_set():
+            with self._lock:
+                pace = self._pace.get(index, PART_SECONDS)
+            part = min(end - first, max(1, int(PART_SECONDS / pace)))
+            began = time.monotonic()
+            self._run_part(index, first, part)
+            with self._lock:
+                self._pace[index] = max(time.monotonic() - began, LEAST_SECONDS) / part
+            first += part
+
+    def _run_part(self, index: int, first: int, trials: int) -> None:
+        shared = self.plan.draws[index]
+        with self._lock:
+            prepared = self._prepared.get(index)
+            if prepared is None:
+                prepared = self._prepared[index] = shared.prepared()
+        for done in shared.run(prepared, first, trials, self._plain):
+            done.fill(self.columns[done.cell], first)
+            with self._lock:
+                self._seconds[done.cell] += done.seconds
+                self._finished[done.cell][first : first + trials] = True
+                self.progress.done[done.cell] += trials
+            if self._cancelled.is_set():
+                return
+
+    def _plain(self, what: str, function: Callable[..., Any], *given: Any) -> Any:
+        """Return what a function in plain Python gives in a worker process."""
+        assert self._processes is not None
+        try:
+            return self._processes.submit(function, *given).result()
+        except BrokenExecutor:
+            raise WorkFailedError(f"{what}: its worker process died; mend the plug-in") from None
+
+
+def available_workers() -> int:
+    """Return how many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _chunks(plan: Plan) -> Iterator[tuple[int, int, int]]:
+    """Yield the work: index of the draws, first trial, number of trials."""
+    for index, shared in enumerate(plan.draws):
+        for first in range(0, shared.trials, shared.chunk):
+            yield index, first, min(shared.chunk, shared.trials - first)
+
+
+def _processes(plan: Plan, workers: int) -> ProcessPoolExecutor | None:
+    if not any(shared.needs_processes for shared in plan.draws):
+        return None
+    # A forked child would inherit the state of threads that it does not have.
+    spawned = multiprocessing.get_context("spawn")
+    return ProcessPoolExecutor(workers, mp_context=spawned, initializer=begin_worker)

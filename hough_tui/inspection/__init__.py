@@ -1,0 +1,1 @@
+"""Inspection: one trial looked at closely."""

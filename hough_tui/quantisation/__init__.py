@@ -1,0 +1,1 @@
+"""Quantisation: advice, what it is designed for, its forecast, and putting it into a set."""

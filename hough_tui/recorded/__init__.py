@@ -1,0 +1,1 @@
+"""Recorded plots and points: initiation and clustering of them."""

@@ -1,0 +1,1 @@
+"""Runs as the application knows them: under way, shown, kept."""

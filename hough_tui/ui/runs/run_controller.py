@@ -1,0 +1,195 @@
+"""A run from its plan to its place in the store, in one worker thread; it knows nothing of screens."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+
+from algorithms.errors import RequestError
+from hough_tui.experiments.cases import Row
+from hough_tui.experiments.engines.threads import Job
+from hough_tui.experiments.plan import plan_run
+from hough_tui.experiments.stores.folder import FolderStore
+from hough_tui.ui.runs.shown_run import LiveRun
+from scenarios.model import ScenarioSet
+
+PERIOD = 0.4
+"""Seconds from one snapshot of the rows to the next."""
+
+SHARE = 0.1
+"""The most of the time that snapshots may take: those of long runs come more seldom."""
+
+KEPT_ON_LEAVING = 4 * 2**20
+"""Bytes of per-trial columns that can be kept while the user waits for the application to end."""
+
+
+NICENESS = 5
+"""How much the engine's threads give way to others."""
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What is to run.
+
+    Attributes
+    ----------
+    given : the set
+    experiments : names; none: all
+    trials, seed : in place of the experiments' own, where given
+    """
+
+    given: ScenarioSet
+    experiments: tuple[str, ...] = ()
+    trials: int | None = None
+    seed: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Started:
+    """The trials have begun."""
+
+    live: LiveRun
+
+
+@dataclass(frozen=True, slots=True)
+class Filled:
+    """More trials are finished."""
+
+    rows: tuple[Row, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """Nothing more will come.
+
+    Attributes
+    ----------
+    rows : over all trials that were finished
+    seconds : wall-clock time of the trials
+    is_complete : whether every trial was done
+    kept_as : the run's name in the store, if it is there
+    problem : why the run failed, or could not be kept
+    """
+
+    rows: tuple[Row, ...] = ()
+    seconds: float = 0.0
+    is_complete: bool = False
+    kept_as: str | None = None
+    problem: str | None = None
+
+
+Event = Started | Filled | Ended
+
+
+class Running:
+    """One run.
+
+    Parameters
+    ----------
+    asked : what is to run
+    tell : is given what happens, in the worker's thread
+    """
+
+    def __init__(self, asked: Asked, tell: Callable[[Event], None]) -> None:
+        self._asked, self._tell = asked, tell
+        self._stopped = threading.Event()
+        self._is_leaving = False
+        self._job: Job | None = None
+
+    def cancel(self, *, is_leaving: bool = False) -> None:
+        """Stop after the stages that are under way; from any thread, at any time.
+
+        Parameters
+        ----------
+        is_leaving : the application ends: what is finished is kept, if that is quickly done
+        """
+        self._is_leaving = self._is_leaving or is_leaving
+        self._stopped.set()
+        if self._job is not None:
+            self._job.cancel()
+
+    def work(self) -> None:
+        """Do all of it; the body of the worker's thread. What goes wrong is told, not raised."""
+        live: LiveRun | None = None
+        try:
+            asked = self._asked
+            plan = plan_run(
+                [asked.given], experiments=asked.experiments, trials=asked.trials, seed=asked.seed
+            )
+            if self._stopped.is_set():
+                self._tell(Ended())
+                return
+            self._job = Job(plan)
+            if self._stopped.is_set():  # it was set before there was a job to cancel
+                self._job.cancel()
+            _give_way()
+            live = LiveRun(self._job)
+            self._tell(Started(live))
+            self._fill(live)
+            self._tell(self._end(live))
+        except Exception as error:
+            rows = live.rows if live is not None else ()
+            self._tell(Ended(rows, problem=problem_words(error)))
+
+    def _fill(self, live: LiveRun) -> None:
+        pause = PERIOD
+        while not live.job.wait(pause):
+            if self._stopped.is_set():
+                continue
+            began = time.monotonic()
+            live.rows = live.snapshot()
+            self._tell(Filled(live.rows))
+            pause = max(PERIOD, (time.monotonic() - began) / SHARE)
+
+    def _end(self, live: LiveRun) -> Ended:
+        job = live.job
+        live.rows = live.snapshot()
+        live.is_over = True
+        kept_as = problem = None
+        if job.is_complete:
+            self._tell(Filled(live.rows))  # keeping a million trials takes seconds
+            kept_as, problem = keep(live)
+        elif self._is_leaving and job.progress.done.any() and _is_small(live):
+            kept_as, problem = keep(live)
+        return Ended(live.rows, job.seconds, job.is_complete, kept_as, problem)
+
+
+def _give_way() -> None:
+    """Put the engine's threads behind the one of the screen, which else waits its turn among them."""
+    if sys.platform != "linux":  # elsewhere threads have no priority of their own that could be set so
+        return
+    for thread in threading.enumerate():
+        if thread.name.startswith("chunks") and thread.native_id is not None:
+            with suppress(OSError):  # it may have come to its end
+                os.setpriority(os.PRIO_PROCESS, thread.native_id, NICENESS)
+
+
+def keep(live: LiveRun) -> tuple[str | None, str | None]:
+    """Keep a run; return its name, or why it could not be kept."""
+    store = FolderStore()
+    try:
+        return store.add(live.found()), None
+    except OSError as error:
+        return None, (
+            f"The run could not be kept in {store.folder}: {error.strerror or error}. "
+            "Its results stay on the screen: e exports them, w tries to keep them again."
+        )
+
+
+def problem_words(error: Exception) -> str:
+    """Return what went wrong, in words that help."""
+    if isinstance(error, RequestError):
+        return str(error)
+    if isinstance(error, MemoryError):
+        return "There is not enough memory for so many trials; ask for fewer trials or fewer experiments."
+    return f"{type(error).__name__}: {error}"
+
+
+def _is_small(live: LiveRun) -> bool:
+    columns = (columns for columns in live.job.columns)
+    return sum(values.nbytes for one in columns for values in one.arrays().values()) <= KEPT_ON_LEAVING

@@ -1,0 +1,215 @@
+"""Runs as the views show them: one row a cell, and the trials behind each row."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.errors import RequestError
+from hough_tui.experiments.cases import Cell, Columns, Row
+from hough_tui.experiments.columns import TrialColumns
+from hough_tui.experiments.engines.threads import Job
+from hough_tui.experiments.plan import plan_run
+from hough_tui.experiments.results import identity, result
+from hough_tui.experiments.stores.folder import Run
+
+
+@dataclass(frozen=True, slots=True)
+class RowTrials:
+    """The trials behind one row.
+
+    Attributes
+    ----------
+    cell : what ran
+    columns : which trials of the experiment they are, and what each of them gave
+    """
+
+    cell: Cell
+    columns: Columns
+
+    @property
+    def numbers(self) -> NDArray[np.int32]:
+        """Which trials of the experiment they are, int32 (trials,)."""
+        return self.columns.trial
+
+    @property
+    def of_tracks(self) -> TrialColumns:
+        """What each trial gave, of a row of initiation.
+
+        Raises
+        ------
+        RequestError
+            Where the row is of clustering.
+        """
+        if not isinstance(self.columns, TrialColumns):
+            raise RequestError("this row is of clustering: its trials have clusters, and no tracks")
+        return self.columns
+
+
+class ShownRun(ABC):
+    """A run on the screen.
+
+    Attributes
+    ----------
+    name : what files that are made of it are called
+    rows : one a cell, in the order of the plan; they are replaced, never changed
+    """
+
+    name: str
+    rows: tuple[Row, ...]
+
+    @abstractmethod
+    def trials(self, index: int) -> RowTrials:
+        """Return the trials behind a row; it may take long.
+
+        Raises
+        ------
+        RequestError
+            Where they cannot be told.
+        """
+
+    @abstractmethod
+    def document(self) -> dict[str, Any]:
+        """Return the result document, as it is kept and exported; it may take long.
+
+        Raises
+        ------
+        RequestError
+            Where there is none yet.
+        """
+
+
+class LiveRun(ShownRun):
+    """A run of this session, under way or over."""
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+        self.name = "+".join(given.name for given in job.plan.sets)
+        self.rows = tuple(cell.blank() for cell in job.plan.cells)
+        self.is_over = False
+        self._found: Run | None = None
+
+    def snapshot(self) -> tuple[Row, ...]:
+        """Return the rows over the trials that are finished by now.
+
+        Notes
+        -----
+        A cell that has no more trials than in the rows at hand keeps its row.
+        """
+        return tuple(
+            row if row["trials"] == self.job.progress.done[index] else self._tallied(index, row)
+            for index, row in enumerate(self.rows)
+        )
+
+    def trials(self, index: int) -> RowTrials:
+        cell = self.job.plan.cells[index]
+        finished, columns = self._finished(index), self.job.columns[index]
+        if not finished.any():
+            raise RequestError("no trial of this row is finished yet")
+        return RowTrials(cell, columns if finished.all() else columns.part(finished))
+
+    def document(self) -> dict[str, Any]:
+        return self.found().document
+
+    def found(self) -> Run:
+        """Return the run as it is kept; it may take long.
+
+        Raises
+        ------
+        RequestError
+            Where it is still under way.
+        """
+        if not self.is_over:
+            raise RequestError("the run is still under way; wait for its end, or cancel it")
+        if self._found is None:
+            self._found = result(self.job)
+        return self._found
+
+    def _tallied(self, index: int, row: Row) -> Row:
+        cell, columns = self.job.plan.cells[index], self.job.columns[index]
+        finished = self._finished(index)
+        if not finished.any():
+            return row
+        if not finished.all():
+            columns = columns.part(finished)
+        return cell.tally(columns, float(self.job._seconds[index]))
+
+    def _finished(self, index: int) -> NDArray[np.bool_]:
+        # A copy: the workers go on, and all columns must be cut by one and the same mask.
+        return self.job._finished[index].copy()
+
+
+class KeptRun(ShownRun):
+    """A run from the store."""
+
+    def __init__(self, name: str, run: Run) -> None:
+        self.name = name
+        self.run = run
+        self.rows = tuple(run.document["rows"])
+        self._cells = _cells(run)
+
+    def trials(self, index: int) -> RowTrials:
+        cell, row = self._cells[index], self.rows[index]
+        if cell is None:
+            raise RequestError(
+                "this row's scenario and initiator cannot be told from the sets that were kept with the "
+                "run, so its trials cannot be drawn again"
+            )
+        arrays = dict(self.run.columns[index])
+        if "trial" not in arrays:  # as in runs of the first versions
+            if row["trials"] < cell.experiment.trials:
+                raise RequestError(
+                    f"the run was cancelled after {row['trials']:,} of this row's "
+                    f"{cell.experiment.trials:,} trials, and the version that kept it did not keep "
+                    "which ones they were; run it again to open its trials"
+                )
+            arrays["trial"] = np.arange(row["trials"], dtype=np.int32)
+        # Runs of earlier versions do not know it.
+        arrays.setdefault("mixed", np.full(row["trials"], -1, np.int32))
+        return RowTrials(cell, kept_columns(cell, arrays))
+
+    def document(self) -> dict[str, Any]:
+        return self.run.document
+
+
+def cell_words(cell: Cell) -> str:
+    """Return what ran in a cell: scenario, initiator, swept values."""
+    swept = (f"{key} {value:g}" for key, value in cell.swept.items())
+    return " · ".join((*cell.elements.values(), *swept))
+
+
+def kept_columns(cell: Cell, arrays: Mapping[str, NDArray[Any]]) -> Columns:
+    """Return the per-trial columns of a row as they were kept.
+
+    Raises
+    ------
+    RequestError
+        Where one is missing.
+    """
+    empty = cell.empty_columns()
+    missing = [name for name in empty.arrays() if name not in arrays]
+    if missing:
+        raise RequestError(f"the run was kept without the columns {', '.join(missing)}")
+    return type(empty).of(arrays)
+
+
+def _cells(run: Run) -> list[Cell | None]:
+    """Return the cell of each row, None where the sets do not hold it.
+
+    The rows are those cells, in their order, that had finished trials.
+    """
+    rows = run.document["rows"]
+    try:
+        cells = iter(plan_run(run.sets).cells)
+    except RequestError:
+        return [None] * len(rows)
+    found: list[Cell | None] = []
+    for row in rows:
+        wanted = identity(row)
+        found.append(next((cell for cell in cells if identity(cell.blank()) == wanted), None))
+    return found

@@ -1,0 +1,1 @@
+"""Recorded plots: one file a format."""
