@@ -43,7 +43,7 @@ class Clutter(Declared):
     region: Region | None = parameter(None, help="where they lie; the scenario's region where none is given")
 
     @classmethod
-    def is_meant(cls, data: Mapping[str, Any]) -> bool:
+    def matches_tag(cls, data: Mapping[str, Any]) -> bool:
         """Return whether data are of this kind of clutter; without a kind they are of the Poisson one."""
         return bool(_clutter_kind(data) == cls.model_fields["kind"].default)
 

@@ -28,7 +28,7 @@ class InitiatorEntry(Declared):
     initiator: str = parameter(help="which initiator it is")
 
     @classmethod
-    def is_meant(cls, data: Mapping[str, Any]) -> bool:
+    def matches_tag(cls, data: Mapping[str, Any]) -> bool:
         """Return whether data name this initiator, by `initiator` or else by `name`."""
         return bool(_which(data) == cls.model_fields["initiator"].default)
 
@@ -82,7 +82,7 @@ class ClusteringEntry(Declared):
     mode: str = parameter(help="how the points of a target are gathered")
 
     @classmethod
-    def is_meant(cls, data: Mapping[str, Any]) -> bool:
+    def matches_tag(cls, data: Mapping[str, Any]) -> bool:
         """Return whether data name this mode, by `mode` or else by `name`."""
         return bool(_which_mode(data) == cls.model_fields["mode"].default)
 

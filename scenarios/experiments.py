@@ -102,7 +102,7 @@ class Experiment(Declared):
     seed: Seed = parameter(1, help="which draws: the same seed gives the same draws")
 
     @classmethod
-    def is_meant(cls, data: Mapping[str, Any]) -> bool:
+    def matches_tag(cls, data: Mapping[str, Any]) -> bool:
         """Return whether data are of this kind of experiment; without a kind they are of initiation."""
         return bool(experiment_kind(data) == cls.model_fields["kind"].default)
 

@@ -56,7 +56,7 @@ class Sensor(Declared):
     first_scan: NotNegative = parameter(0.0, dimension=Dimension.TIME, help="time of its first scan")
 
     @classmethod
-    def is_meant(cls, data: Mapping[str, Any]) -> bool:
+    def matches_tag(cls, data: Mapping[str, Any]) -> bool:
         """Return whether data are of this kind of sensor; without a kind they are of the cartesian one."""
         return bool(sensor_kind(data) == cls.model_fields["kind"].default)
 

@@ -35,7 +35,7 @@ class Clustering(Declared):
     )
 
     @classmethod
-    def is_meant(cls, data: Mapping[str, Any]) -> bool:
+    def matches_tag(cls, data: Mapping[str, Any]) -> bool:
         """Return whether data are of this mode; without a mode they are of the recommended one."""
         return bool(mode_of(data) == cls.model_fields["mode"].default)
 

@@ -1,0 +1,195 @@
+"""Validation of data against declared models, and the words for what is wrong in them."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, TypeVar
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import PydanticCustomError
+
+from algorithms.errors import RequestError
+from algorithms.parameters.paths import Path, dotted, fields_at, path_in, value_at
+
+Model = TypeVar("Model", bound=BaseModel)
+
+MISSING_EITHER: Final = "missing_either"
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One thing that is wrong with given data.
+
+    Attributes
+    ----------
+    path : where in the data
+    message : what was given and what is allowed
+    on_key : whether the key is wrong, rather than its value
+    """
+
+    path: Path
+    message: str
+    on_key: bool = False
+
+    @property
+    def field(self) -> str:
+        """The path as people write it, `targets[0].position[1]`."""
+        return dotted(self.path)
+
+
+class FieldError(RequestError):
+    """A wrong request whose place in the given data is known."""
+
+    def __init__(self, problem: Problem) -> None:
+        super().__init__(join(problem))
+        self.problem = problem
+
+
+def missing_either(other: str) -> PydanticCustomError:
+    """Return the error of a validator of a field that must be given, or something else in its place."""
+    return PydanticCustomError(MISSING_EITHER, "missing, and {other} is missing, too", {"other": other})
+
+
+def validated(model: type[Model], data: Any, what: str) -> Model:
+    """Return data as a model.
+
+    Raises
+    ------
+    RequestError
+        One line a problem, each beginning with `what`, where the data are not as declared.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        found = problems(error, model, data)
+        raise RequestError("\n".join(f"{what}: {join(problem)}" for problem in found)) from None
+
+
+def join(problem: Problem) -> str:
+    """Return a problem with its field before it."""
+    return f"{problem.field}: {problem.message}" if problem.path else problem.message
+
+
+def problems(error: ValidationError, model: type[BaseModel], data: Any) -> list[Problem]:
+    """Return what a validation found, in words, each with its place in the data.
+
+    The alternatives of one field (a number, or `auto`) are one problem.
+    """
+    gathered: dict[Path, list[Any]] = {}
+    for detail in error.errors(include_url=False):
+        if detail["type"] == "missing" and isinstance(detail["loc"][-1], int):
+            # A list that is too short is wrong itself, not the element that it lacks.
+            path = path_in(data, detail["loc"][:-1], missing=False)
+            detail["ctx"] = {"needed": detail["loc"][-1] + 1}
+            detail["type"], detail["input"] = "too_few", value_at(data, path)
+        else:
+            path = path_in(data, detail["loc"], missing=detail["type"] in ("missing", MISSING_EITHER))
+        gathered.setdefault(path, []).append(detail)
+    # Where one alternative fails deeper inside, the failure of the others says nothing more.
+    outer = {path[:length] for path in gathered for length in range(len(path))}
+    return [_problem(path, details, model, data) for path, details in gathered.items() if path not in outer]
+
+
+def _problem(path: Path, details: list[Any], model: type[BaseModel], data: Any) -> Problem:
+    first = details[0]
+    if first["type"] == "extra_forbidden":
+        return Problem(path, _unknown(str(path[-1]), fields_at(model, data, path[:-1])), on_key=True)
+    if first["type"] == "invalid_key":
+        return Problem(path, f"the name {_shown(first['input'])} is no text", on_key=True)
+    if first["type"] == "missing":
+        return Problem(path, "is missing; it must be given", on_key=True)
+    if first["type"] == MISSING_EITHER:
+        return Problem(path, f"is missing; it must be given, or {first['ctx']['other']}", on_key=True)
+    if first["type"] == "value_error":
+        return Problem(path, str(first["ctx"]["error"]))
+    if first["type"] == "union_tag_invalid":
+        tags = [tag.strip("'") for tag in first["ctx"]["expected_tags"].split(", ")]
+        return Problem(path, unknown(first["ctx"]["tag"], tags, "kind"))
+    allowed = list(dict.fromkeys(_allowed(detail) for detail in details))
+    return Problem(path, f"{_shown(first['input'])} is given; it must be {' or '.join(allowed)}")
+
+
+def unknown(name: str, known: Sequence[str], what: str) -> str:
+    """Return the words for a name that is not known, with the nearest known one."""
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    hint = f"; did you mean '{near[0]}'?" if near else ""
+    return f"there is no {what} '{name}'{hint} (known: {', '.join(known) or 'none'})"
+
+
+def _unknown(name: str, known: Sequence[str]) -> str:
+    return unknown(name, known, "field")
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, str):
+        return repr(value)
+    if isinstance(value, Mapping):
+        return "a mapping"
+    if isinstance(value, list | tuple):
+        return f"a list of {len(value)}"
+    if value is None:
+        return "nothing"
+    return str(value).lower() if isinstance(value, bool) else repr(value)
+
+
+_ALLOWED = {
+    "float_type": "a number",
+    "float_parsing": "a number",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "finite_number": "a finite number",
+    "string_type": "text",
+    "bool_type": "true or false",
+    "bool_parsing": "true or false",
+    "greater_than": "greater than {gt}",
+    "greater_than_equal": "at least {ge}",
+    "less_than": "less than {lt}",
+    "less_than_equal": "at most {le}",
+    "literal_error": "{expected}",
+    "enum": "{expected}",
+    "too_few": "a list of {needed}",
+    "too_short": "a list of at least {min_length}",
+    "too_long": "a list of at most {max_length}",
+    "string_too_short": "at least {min_length} characters long",
+    "string_pattern_mismatch": "of the form {pattern}",
+    "list_type": "a list",
+    "tuple_type": "a list",
+    "dict_type": "a mapping of names to values",
+    "model_type": "a mapping of names to values",
+    "model_attributes_type": "a mapping of names to values",
+    "union_tag_not_found": "a mapping that says which kind it is",
+    "none_required": "null",
+    "int_parsing_size": "a smaller whole number",
+}
+
+
+def _allowed(detail: Any) -> str:
+    words = _ALLOWED.get(detail["type"])
+    context = {name: _written(value) for name, value in detail.get("ctx", {}).items()}
+    return words.format(**context) if words else str(detail["msg"])
+
+
+def _written(value: Any) -> Any:
+    return f"{value:.15g}" if isinstance(value, float) else value
+
+
+def replaced(model: Model, values: Mapping[Path, Any]) -> Model:
+    """Return a model with the values at some paths replaced together, validated anew.
+
+    Raises
+    ------
+    FieldError
+        Where a value is not allowed at its place.
+    """
+    data = model.model_dump(mode="json")
+    for path, value in values.items():
+        here: Any = data
+        for part in path[:-1]:
+            here = here[part]
+        here[path[-1]] = value
+    try:
+        return type(model).model_validate(data)
+    except ValidationError as error:
+        raise FieldError(problems(error, type(model), data)[0]) from None
