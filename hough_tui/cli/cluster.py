@@ -97,14 +97,15 @@ def cluster(
         sys.stdout.write(json_text(told))
         return
     print_renderables(cluster_table(told, output_width()))
-    shown = recording.place(recording.fullest)
+    place = recording.place(recording.fullest)
+    scan = int(place["scan"])
     if (plot or with_steps) and len(recording.scans) > 1:
         which = f"the first of {len(recording.scans):,}"
         if recording.dwells is not None:
-            which = f"dwell {shown['dwell']:g}, that of the most points among {len(recording.scans):,}"
-        tell(f"scan {shown['scan']} is shown, {which}; see --scan")
+            which = f"dwell {place['dwell']:g}, that of the most points among {len(recording.scans):,}"
+        tell(f"scan {scan} is shown, {which}; see --scan")
     if with_steps:
-        print_renderables(step_table(told, width=output_width(), **shown))
+        print_renderables(step_table(told, scan, output_width(), place.get("dwell")))
     if plot:
         print_plane(found)
 

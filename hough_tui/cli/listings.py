@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 import typer
@@ -85,7 +86,7 @@ def validate(
         except RequestError as error:
             wrong.append(str(error))
         else:
-            parts = {
+            parts: dict[str, Sequence[object]] = {
                 "scenario": found.scenarios,
                 "scene": found.scenes,
                 "initiator": found.initiators,

@@ -70,7 +70,7 @@ def initiate(
     scenario = initiation.like_scenario(like) if like else None
     base = scenario.context if scenario else None
     text = read_text(plots)
-    spacing = interval if interval is not None else base and base.interval
+    spacing = base.interval if interval is None and base is not None else interval
     recording = parse_plots(text, str(plots), interval=spacing, scans=window(scans))
     recording = initiation.with_noise(recording, known, scenario)
     context, assumed = initiation.context_of(recording, known, base, window(scans))

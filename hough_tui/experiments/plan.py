@@ -89,9 +89,9 @@ def plan_run(
         for point in points(given, experiment)
     )
     if not cells:
-        names = ", ".join(given.name for given in sets)
         raise RequestError(
-            f"{names}: the set has no experiments, so there is nothing to run; give one under `experiments`"
+            f"{', '.join(names)}: the set has no experiments, so there is nothing to run; give one under "
+            "`experiments`"
         )
     size = sum(cell.experiment.trials * cell.bytes_a_trial for cell in cells)
     if size > MOST_BYTES:

@@ -81,7 +81,7 @@ def _compared(table: PublishedTable, entry: Entry, columns: Columns) -> dict[str
     measure = MEASURES[entry.metric]
     values = measure.values(columns)
     values = values[np.isfinite(values)]
-    told = {
+    told: dict[str, Any] = {
         "case": entry.case,
         "metric": entry.metric,
         "published": entry.published,

@@ -90,8 +90,9 @@ def moving_targets(scenario: Scenario) -> dict[int, TargetLine]:
         begin, end = target.lifetime(scenario.interval)
         scans = math.floor((min(end, scenario.last_time) - begin) / context.interval + 1e-9) + 1
         if scans > 0 and not target.stands_still:
+            sigma_x, sigma_y = context.sigma[:2]
             found[index] = TargetLine.of_motion(
-                target.position[:2], target.velocity[:2], scans, context.interval, context.sigma[:2]
+                target.position[:2], target.velocity[:2], scans, context.interval, (sigma_x, sigma_y)
             )
     return found
 

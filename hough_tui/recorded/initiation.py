@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.context import Box, Context, Unit
 from algorithms.errors import RequestError
@@ -285,13 +286,16 @@ def write_accumulator(found: Initiation, path: Path) -> None:
     """
     made = found.accumulator
     assert made is not None
-    further = {
-        name: values
-        for name, values in (("std", made.std), ("weighted", made.weighted))
-        if values is not None
+    arrays: dict[str, NDArray[Any] | None] = {
+        "votes": made.votes,
+        "theta": made.grid.theta,
+        "rho": made.grid.rho,
+        "std": made.std,
+        "weighted": made.weighted,
     }
+    written = {name: values for name, values in arrays.items() if values is not None}
     archive = io.BytesIO()
-    np.savez_compressed(archive, votes=made.votes, theta=made.grid.theta, rho=made.grid.rho, **further)
+    np.savez_compressed(archive, allow_pickle=False, **written)
     replace_file(path, archive.getvalue())
 
 

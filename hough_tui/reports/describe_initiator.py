@@ -71,4 +71,4 @@ def _tells(schema: dict[str, Any], key: str) -> bool:
     if key not in schema or abs(schema[key]) == LARGEST_WHOLE:
         return False
     stricter = {"maximum": "exclusiveMaximum", "minimum": "exclusiveMinimum"}.get(key, "")
-    return schema.get(stricter) != schema[key]
+    return bool(schema.get(stricter) != schema[key])

@@ -185,12 +185,11 @@ def _efforts(rows: Sequence[Row]) -> Iterator[str]:
             counts = told.setdefault(str(row.get("initiator") or ""), {}).setdefault(name, [])
             counts.append(float(count))
     alike: dict[str, list[str]] = {}
-    for initiator, counts in told.items():
-        parts = [
-            f"{name.replace('_', ' ')} {significant(min(found))}"
-            + (f" to {significant(max(found))}" if significant(min(found)) != significant(max(found)) else "")
-            for name, found in counts.items()
-        ]
+    for initiator, counted in told.items():
+        parts = []
+        for name, counts in counted.items():
+            least, most = significant(min(counts)), significant(max(counts))
+            parts.append(f"{name.replace('_', ' ')} {least}" + (f" to {most}" if least != most else ""))
         alike.setdefault(", ".join(parts), []).append(initiator)
     for words, initiators in alike.items():
         yield f"{', '.join(initiators)}, on the mean of a trial: {words}."

@@ -315,7 +315,11 @@ class HoughApp(App[None]):
 
     def action_open(self) -> None:
         """Open another set."""
-        self._when_saved(lambda: self._load(None))
+
+        def load() -> None:
+            self._load(None)
+
+        self._when_saved(load)
 
     def action_save(self) -> None:
         """Save the set to its file; a set without one is asked for it."""

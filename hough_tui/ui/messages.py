@@ -8,7 +8,7 @@ from textual.message import Message
 
 if TYPE_CHECKING:
     from algorithms.parameters import Path
-    from hough_tui.experiments.plan import Cell
+    from hough_tui.experiments.cases import Cell
 
 
 class SetShown(Message):

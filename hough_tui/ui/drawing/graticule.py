@@ -54,7 +54,8 @@ class Sector:
         """Return points by their distance and azimuth: float64 (…, 2)."""
         azimuth = np.radians(azimuth_deg)
         x, y = distance * np.sin(azimuth), distance * np.cos(azimuth)
-        return np.stack(np.broadcast_arrays(x, y), axis=-1) + np.array(self.station)
+        points: Array = np.stack(np.broadcast_arrays(x, y), axis=-1) + np.array(self.station)
+        return points
 
 
 @dataclass(frozen=True, slots=True)

@@ -191,5 +191,5 @@ def problem_words(error: Exception) -> str:
 
 
 def _is_small(live: LiveRun) -> bool:
-    columns = (columns for columns in live.job.columns)
-    return sum(values.nbytes for one in columns for values in one.arrays().values()) <= KEPT_ON_LEAVING
+    arrays = (values for columns in live.job.columns for values in columns.arrays().values())
+    return sum(int(values.nbytes) for values in arrays) <= KEPT_ON_LEAVING

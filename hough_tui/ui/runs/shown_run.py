@@ -195,7 +195,8 @@ def kept_columns(cell: Cell, arrays: Mapping[str, NDArray[Any]]) -> Columns:
     missing = [name for name in empty.arrays() if name not in arrays]
     if missing:
         raise RequestError(f"the run was kept without the columns {', '.join(missing)}")
-    return type(empty).of(arrays)
+    columns: Columns = empty.of(arrays)
+    return columns
 
 
 def _cells(run: Run) -> list[Cell | None]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import importlib
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -142,9 +143,9 @@ class MainScreen(AttentiveScreen):
         )
         status.is_changed = workspace.is_changed
         active = self.query_one(TabbedContent).active
-        told = {active, VIEWS_OF.get(part or "")} & set(self._views)
-        self._stale = set(self._views) - told
-        for name in told:
+        shown = {name for name in self._views if name in (active, VIEWS_OF.get(part or ""))}
+        self._stale = set(self._views) - shown
+        for name in shown:
             self._views[name].show_set(workspace.given)
         self.show_soundness()
 
@@ -156,7 +157,7 @@ class MainScreen(AttentiveScreen):
         part : the list of the set that the edit was of: another view may be seen by now
         """
         view = self._views.get(VIEWS_OF[part])
-        if hasattr(view, "refuse"):
+        if view is not None and hasattr(view, "refuse"):
             view.refuse([problem])
         self.show_soundness()
 
@@ -304,18 +305,18 @@ def _stop_work_of(view: Widget) -> None:
         widget.workers.cancel_node(widget)
 
 
+VIEWS = {
+    "scenario": ("hough_tui.ui.views.scenario", "ScenarioView"),
+    "initiator": ("hough_tui.ui.views.initiator", "InitiatorView"),
+    "look": ("hough_tui.ui.views.look", "LookView"),
+    "clustering": ("hough_tui.ui.views.clustering", "ClusteringView"),
+    "monte-carlo": ("hough_tui.ui.views.monte_carlo", "MonteCarloView"),
+    "results": ("hough_tui.ui.views.results", "ResultsView"),
+}
+"""Module and class of each view."""
+
+
 def _view(name: str) -> Any:
     """Return a new view; its module, with all that is heavy, is imported here for the first time."""
-    if name == "scenario":
-        from hough_tui.ui.views.scenario import ScenarioView as View
-    elif name == "initiator":
-        from hough_tui.ui.views.initiator import InitiatorView as View
-    elif name == "look":
-        from hough_tui.ui.views.look import LookView as View
-    elif name == "clustering":
-        from hough_tui.ui.views.clustering import ClusteringView as View
-    elif name == "monte-carlo":
-        from hough_tui.ui.views.monte_carlo import MonteCarloView as View
-    else:
-        from hough_tui.ui.views.results import ResultsView as View
-    return View()
+    module, view = VIEWS[name]
+    return getattr(importlib.import_module(module), view)()

@@ -14,11 +14,12 @@ from textual.worker import get_current_worker
 
 from algorithms.errors import RequestError
 from algorithms.parameters import Parameters
+from hough_tui.experiments.chunks.initiation import InitiationCell
 from hough_tui.experiments.chunks.plot_sources import Stage
 from hough_tui.inspection.trial import Picture, TrialLook, look, picture
 from hough_tui.ui.views.look_panel import LookPanel
 from scenarios.entries import ClusteringEntry, InitiatorEntry
-from scenarios.experiments import MatchCriterion
+from scenarios.experiments import InitiationExperiment, MatchCriterion
 from scenarios.model import Scenario, ScenarioSet
 from scenarios.selection import known_stages, seed_of
 
@@ -74,7 +75,7 @@ class LookView(Widget):
         self._given: ScenarioSet | None = None
         self._scenario, self._entry, self._trial = 0, 0, 0
         self._stage_name: str | None = None
-        self._opened: TrialOpened | None = None
+        self._cell: InitiationCell | None = None
         self._is_double = False
         self._timer: Any = None
         self._asked_at = -DEBOUNCE
@@ -101,26 +102,27 @@ class LookView(Widget):
     def show_set(self, given: ScenarioSet) -> None:
         """Show the set as it is now, the same trial where it is still there."""
         self._given = given
-        self._opened = None
+        self._cell = None
         self._scenario = max(0, min(self._scenario, len(given.scenarios) - 1))
         self._entry = min(self._entry, max(0, len(given.initiators) - 1))
         self._ask()
 
     def open_trial(self, opened: TrialOpened) -> None:
         """Show a trial of a run, with the values that were swept there."""
-        self._opened = opened
+        assert isinstance(opened.cell, InitiationCell)
+        self._cell = opened.cell
         self._trial = opened.trial
         if self._given is not None:
             names = [found.name for found in self._given.scenarios]
             entries = [found.name for found in self._given.initiators]
-            scenario, entry = opened.cell.scenario.name, opened.cell.entry.name
+            scenario, entry = self._cell.scenario.name, self._cell.entry.name
             self._scenario = names.index(scenario) if scenario in names else 0
             self._entry = entries.index(entry) if entry in entries else 0
         self._ask()
 
     def choose(self, index: int) -> None:
         """Look at another scenario of the set."""
-        self._scenario, self._opened = index, None
+        self._scenario, self._cell = index, None
         self._ask()
 
     def action_trial(self, step: int) -> None:
@@ -132,7 +134,7 @@ class LookView(Widget):
         """Look through the eyes of another initiator."""
         if self._given is not None and self._given.initiators:
             self._entry = (self._entry + step) % len(self._given.initiators)
-            self._opened = None
+            self._cell = None
             self._ask()
 
     def action_stage(self, step: int) -> None:
@@ -143,13 +145,13 @@ class LookView(Widget):
             self.notify("No sensor of the scenario gives points that could be clustered", markup=False)
             return
         names = list(stages(self._given))
-        if self._opened is not None:
-            opened = self._opened.cell.clustering
-            here = "none" if opened is None else opened.name
+        if self._cell is not None:
+            stage = self._cell.clustering
+            here = "none" if stage is None else stage.name
         else:
             here = self._stage_name or names[0]
         place = names.index(here) if here in names else 0
-        self._stage_name, self._opened = names[(place + step) % len(names)], None
+        self._stage_name, self._cell = names[(place + step) % len(names)], None
         self._ask()
 
     def action_scenario(self) -> None:
@@ -201,8 +203,9 @@ class LookView(Widget):
                 self.query(LookPanel).first().refuse(f"The set has no {part}.")
                 return
         chosen: list[tuple[InitiatorEntry, Parameters | None]]
-        if self._opened is not None:
-            cell, swept = self._opened.cell, self._opened.cell.swept
+        criterion: MatchCriterion | None
+        if self._cell is not None:
+            cell, swept = self._cell, self._cell.swept
             scenario, seed, criterion = cell.scenario, cell.experiment.seed, cell.criterion
             chosen, stage = [(cell.entry, cell.parameters)], cell.clustering
         else:
@@ -270,6 +273,7 @@ def stages(given: ScenarioSet) -> dict[str, Stage]:
 def criterion_of(given: ScenarioSet, scenario: Scenario) -> MatchCriterion | None:
     """Return the criterion of the first experiment on a scenario; None where there is none."""
     for experiment in given.experiments:
-        if scenario.name in (found.name for found in given.chosen_scenarios(experiment)):
-            return experiment.criterion
+        if isinstance(experiment, InitiationExperiment):
+            if scenario.name in (one.name for one in given.chosen_scenarios(experiment)):
+                return experiment.criterion
     return None

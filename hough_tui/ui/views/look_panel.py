@@ -322,7 +322,8 @@ class LookPanel(Widget):
                 self._marked = cell
                 heatmap.move_cursor(*cell)
         if seen.plane_votes is not None:
-            self._mark_votes(np.isin(seen.plane_votes.pairs, seen.tracks.plots[index]).all(axis=1))
+            is_inside = np.isin(seen.plane_votes.pairs, seen.tracks.plots[index])
+            self._mark_votes(np.asarray(is_inside.all(axis=1)))
         self._light_up(seen.tracks.plots[index])
 
     def _light_up(self, plots: NDArray[np.integer]) -> None:

@@ -51,7 +51,7 @@ class ExperimentForm(ElementForm):
             self.query_one(Caption).tell("The set has no experiment")
             return
         self.query_one(Caption).tell(Part("Names as in the tree", 1), "a sweep: scans: 5, 10, 15")
-        self._index = given.experiments.index(chosen)
+        self._index = list[Experiment](given.experiments).index(chosen)
         scenarios = given.chosen_scenarios(chosen)
         unit = scenarios[0].unit if scenarios else None
         self.query_one(ModelForm).load(chosen, ("experiments", self._index), unit=unit)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import ClassVar
 
 from textual import on
@@ -93,9 +94,9 @@ class RunForm(Horizontal):
             self.query_one(Select).value = name
 
     @property
-    def experiments_of_set(self) -> list[Experiment]:
+    def experiments_of_set(self) -> Sequence[Experiment]:
         """All experiments of the set."""
-        return self._given.experiments if self._given is not None else []
+        return self._given.experiments if self._given is not None else ()
 
     @property
     def experiments(self) -> list[Experiment]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +41,8 @@ def trial_chart(
     names = [f"{mark:.10g}" for mark in marks]
     across = Axis(*reach, max(2, width - 1 - max(map(len, names))))
     up = Axis(low, high, max(2, height - 4))
-    figure = Plot()
+    # Its type says less than plotext can do: a marker for each point.
+    figure: Any = Plot()
     # Otherwise plotext cuts it to the size that it believes the terminal to have.
     figure._limit_size(False, False)
     figure.plot_size(width, height - 1)
