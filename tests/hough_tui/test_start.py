@@ -17,7 +17,6 @@ HEAVY = {
     "textual",
     "plotext",
     "yaml",
-    "ruamel",
     "algorithms",
     "scenarios",
 }

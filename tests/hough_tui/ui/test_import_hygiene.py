@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 PROJECT = Path(__file__).parents[3]
-HEAVY = {"llvmlite", "numba", "numpy", "plotext", "pydantic", "ruamel", "scipy", "textual_plotext", "yaml"}
+HEAVY = {"llvmlite", "numba", "numpy", "plotext", "pydantic", "scipy", "textual_plotext", "yaml"}
 
 
 def loaded(program: str) -> set[str]:
