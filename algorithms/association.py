@@ -1,26 +1,20 @@
-"""From a line to its plots, and from plots to a kinematic state."""
+"""From a line to its plots."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
-from algorithms.hough.lines import line_through
-from algorithms.plots import PlotChunk, Plots
-from algorithms.tracks import TrackChunk, Tracks
+from algorithms.plots import PlotChunk
+from algorithms.tracks import TrackChunk
 
 SEEDS = 128
 """The most plots beside one line among which motions are sought; of more, every k-th is taken."""
 
 REFINEMENTS = 3
 """How often plots are chosen anew about the motion fitted to the plots chosen before."""
-
-
-LEAST_SHARE = 1e-9
-"""The least variance of a plot, as a share of the greatest of its batch."""
 
 
 @kernel
@@ -197,86 +191,3 @@ def _most_scans(chunk: PlotChunk) -> int:
     starts = chunk.offsets[:-1][np.diff(chunk.offsets) > 0]
     begins[starts] = 1
     return int(np.add.reduceat(begins, starts).max())
-
-
-def with_states(plots: Plots, found: TrackChunk, dimensions: int = 2) -> Tracks:
-    """Return the tracks of one batch with their plots and least-squares states.
-
-    In space the covariances of the plots are the weights, where they are known: plots of a radar
-    are far better along the range than across it.
-
-    Parameters
-    ----------
-    plots : the batch
-    found : its tracks, with plots; a chunk of one trial
-    dimensions : of the states: 2 in the plane (x, y), 3 in space
-    """
-    assert found.plots is not None
-    time = plots.first_time
-    held = found.plots >= 0
-    rows = np.where(held, found.plots, 0)
-    if dimensions == 3 and plots.covariance is not None:
-        position, velocity = _weighted_least_squares(plots, plots.covariance, rows, held, time)
-    else:
-        position, velocity = _least_squares(plots, rows, held, time, dimensions)
-    theta, rho = line_through(position[:, :2], velocity[:, :2])
-    return Tracks(
-        found.theta,
-        found.rho,
-        found.score,
-        tuple(row[mask] for row, mask in zip(found.plots, held, strict=True)),
-        position,
-        velocity,
-        theta,
-        rho,
-        time,
-        {name: int(counted[0]) for name, counted in found.effort.items()},
-    )
-
-
-def _least_squares(
-    plots: Plots, rows: NDArray[np.int64], held: NDArray[np.bool_], time: float, dimensions: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    if len(plots) == 0:
-        empty = np.full((len(rows), dimensions), np.nan)
-        return empty, empty
-    weight = held.astype(np.float64)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        count = weight.sum(axis=1)
-        elapsed = plots.time[rows] - time
-        place = plots.position[rows, :dimensions]
-        mean_time = (weight * elapsed).sum(axis=1) / count
-        mean_place = (weight[..., None] * place).sum(axis=1) / count[:, None]
-        centred = weight * (elapsed - mean_time[:, None])
-        velocity = (centred[..., None] * place).sum(axis=1) / (centred**2).sum(axis=1)[:, None]
-    velocity[~np.isfinite(velocity).all(axis=1)] = np.nan
-    still = np.isnan(velocity[:, 0])
-    position = mean_place - np.where(still[:, None], 0.0, velocity * mean_time[:, None])
-    return position, velocity
-
-
-def _weighted_least_squares(
-    plots: Plots,
-    covariance: NDArray[np.float64],
-    rows: NDArray[np.int64],
-    held: NDArray[np.bool_],
-    time: float,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return positions and velocities, float64 (m, 3) each, by generalised least squares."""
-    states = np.full((len(rows), 2, 3), np.nan)
-    # A sensor that does not err at all would be given an infinite weight.
-    least = LEAST_SHARE * max(float(np.trace(covariance, axis1=1, axis2=2).max(initial=0.0)), 1e-300)
-    for track, (own, mask) in enumerate(zip(rows, held, strict=True)):
-        chosen = own[mask]
-        if not len(chosen):
-            continue
-        elapsed = plots.time[chosen] - time
-        powers = 2 if np.ptp(elapsed) > 0.0 else 1
-        start = plots.position[chosen[0]]
-        weight = np.linalg.inv((covariance[chosen] + least * np.eye(3)) / least)
-        design = elapsed[:, None] ** np.arange(powers)
-        normal = np.einsum("ki,kj,kab->iajb", design, design, weight).reshape(3 * powers, 3 * powers)
-        right = np.einsum("ki,kab,kb->ia", design, weight, plots.position[chosen] - start).ravel()
-        states[track, :powers] = np.linalg.solve(normal, right).reshape(powers, 3)
-        states[track, 0] += start
-    return states[:, 0], states[:, 1]

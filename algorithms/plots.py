@@ -31,11 +31,6 @@ class Plots:
     def __len__(self) -> int:
         return len(self.scan)
 
-    @property
-    def first_time(self) -> float:
-        """Time of the batch's first scan that holds a plot, in seconds; 0 without plots."""
-        return float(self.time[0]) if len(self) else 0.0
-
     def chunk(self) -> PlotChunk:
         """Return the chunk that holds this batch alone."""
         offsets = np.array([0, len(self)], dtype=np.int64)

@@ -5,7 +5,7 @@ an instance of `Initiator` or a class of it. With `initiate` alone its trials ru
 processes; as a `ChunkInitiator` in compiled code its chunks run in threads.
 """
 
-from algorithms.association import associate, with_states
+from algorithms.association import associate
 from algorithms.compiled import kernel
 from algorithms.context import Box, Context, Unit
 from algorithms.errors import RequestError
@@ -15,6 +15,7 @@ from algorithms.hough.search import Extraction, PeakSearch
 from algorithms.hough.voting import Accumulator, accumulate
 from algorithms.initiators.accumulating import AccumulatingInitiator, AccumulatingParameters
 from algorithms.initiators.base import ChunkInitiator, Initiator
+from algorithms.kinematics.states import fitted_states, with_states
 from algorithms.parameters import (
     Auto,
     Count,
@@ -28,7 +29,7 @@ from algorithms.parameters import (
     parameter,
 )
 from algorithms.plots import PlotChunk, Plots
-from algorithms.tracks import TrackChunk, Tracks
+from algorithms.tracks import TrackChunk, Tracks, TrackStates
 
 __all__ = [
     "AccumulatingInitiator",
@@ -54,11 +55,13 @@ __all__ = [
     "Positive",
     "RequestError",
     "TrackChunk",
+    "TrackStates",
     "Tracks",
     "Unit",
     "Whole",
     "accumulate",
     "associate",
+    "fitted_states",
     "kernel",
     "line_through",
     "normal_form",

@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from algorithms.association import with_states
 from algorithms.context import Context
 from algorithms.hough.voting import Accumulator
+from algorithms.kinematics.states import with_states
 from algorithms.parameters import Parameters
 from algorithms.plots import PlotChunk, Plots
 from algorithms.space.planes import PlaneVotes
@@ -52,7 +52,7 @@ class Initiator(ABC):
     def strongest(self, plots: Plots, context: Context, parameters: Any, most: int) -> tuple[Tracks, int]:
         """Return the tracks with the highest scores, the highest first, and how many there are in all."""
         tracks = self.initiate(plots, context, parameters)
-        return tracks.chosen(np.argsort(-tracks.score, kind="stable")[:most]), len(tracks)
+        return tracks.select(np.argsort(-tracks.score, kind="stable")[:most]), len(tracks)
 
     def accumulator(self, plots: Plots, context: Context, parameters: Any) -> Accumulator | None:
         """Return the votes of one batch; None for an initiator that has no accumulator."""
@@ -68,7 +68,10 @@ class ChunkInitiator(Initiator):
 
     @abstractmethod
     def initiate_chunk(self, chunk: PlotChunk, context: Context, parameters: Any) -> TrackChunk:
-        """Return the tracks of each trial of a chunk, as lines."""
+        """Return the tracks of each trial of a chunk, as lines.
+
+        Where a track can be declared before the last scan of the batch, `confirmed_scan` says so.
+        """
 
     @abstractmethod
     def associate_chunk(
@@ -76,16 +79,29 @@ class ChunkInitiator(Initiator):
     ) -> TrackChunk:
         """Return the tracks of `initiate_chunk` with their plots."""
 
+    def tracks_of_chunk(
+        self, chunk: PlotChunk, context: Context, parameters: Any, *, plots: bool, states: bool
+    ) -> TrackChunk:
+        """Return the tracks of each trial with their scans of confirmation and what else is asked for.
+
+        Parameters
+        ----------
+        plots : whether tracks need their plots
+        states : whether they need their kinematic states, and so their plots, too
+        """
+        tracks = self.initiate_chunk(chunk, context, parameters).with_confirmation(context.scans - 1)
+        if plots or states:
+            tracks = self.associate_chunk(chunk, tracks, context, parameters)
+        return with_states(chunk, tracks, context, self.dimensions) if states else tracks
+
     def initiate(self, plots: Plots, context: Context, parameters: Any) -> Tracks:
         """Return the tracks of one batch, with their plots and kinematic states."""
-        chunk = plots.chunk()
-        found = self.initiate_chunk(chunk, context, parameters)
-        found = self.associate_chunk(chunk, found, context, parameters)
-        return with_states(plots, found, self.dimensions)
+        return self.tracks_of_chunk(plots.chunk(), context, parameters, plots=True, states=True).only_trial
 
     def strongest(self, plots: Plots, context: Context, parameters: Any, most: int) -> tuple[Tracks, int]:
         """Return the tracks with the highest scores; the others are not associated with plots."""
         chunk = plots.chunk()
-        found = self.initiate_chunk(chunk, context, parameters)
-        chosen = self.associate_chunk(chunk, found.strongest(most), context, parameters)
-        return with_states(plots, chosen, self.dimensions), len(found.theta)
+        tracks = self.tracks_of_chunk(chunk, context, parameters, plots=False, states=False)
+        strongest = self.associate_chunk(chunk, tracks.strongest(most), context, parameters)
+        strongest = with_states(chunk, strongest, context, self.dimensions)
+        return strongest.only_trial, len(tracks.theta)

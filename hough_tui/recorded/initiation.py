@@ -27,6 +27,8 @@ from scenarios.model import Scenario
 from scenarios.recordings.csv_plots import Recording
 from scenarios.sensors import PolarSensor
 
+Array = NDArray[np.float64]
+
 MOST_TRACKS = 1000
 """How many tracks are given where nothing else is asked for."""
 
@@ -237,6 +239,7 @@ def _no_plots(plots: Plots) -> Plots:
 def document(found: Initiation) -> dict[str, Any]:
     """Return an initiation as `initiate --json` prints it."""
     tracks, rows = found.tracks, found.recording.rows
+    lines = tracks.states.lines
     told: dict[str, Any] = {
         "initiator": found.algorithm.name,
         "parameters": found.parameters.model_dump(mode="json"),
@@ -248,20 +251,7 @@ def document(found: Initiation) -> dict[str, Any]:
         "notes": notes(found),
         "effort": dict(tracks.effort),
         "tracks_total": found.total,
-        "tracks": [
-            {
-                "theta_deg": math.degrees(tracks.theta[index]),
-                "rho": float(tracks.rho[index]),
-                "score": _plain(tracks.score[index]),
-                "plots": [int(row) for row in rows[tracks.plots[index]]],
-                "position": _vector(tracks.position[index]),
-                "velocity": _vector(tracks.velocity[index]),
-                "time": tracks.time,
-                "fitted_theta_deg": _number(math.degrees(tracks.fitted_theta[index])),
-                "fitted_rho": _number(tracks.fitted_rho[index]),
-            }
-            for index in range(len(tracks))
-        ],
+        "tracks": [_track(tracks, index, rows, lines) for index in range(len(tracks))],
     }
     if found.accumulator is not None:
         grid, votes = found.accumulator.grid, found.accumulator.votes
@@ -277,6 +267,26 @@ def document(found: Initiation) -> dict[str, Any]:
             "argmax": list(found.accumulator.greatest),
         }
     return told
+
+
+def _track(tracks: Tracks, index: int, rows: NDArray[np.int64], lines: tuple[Array, Array]) -> dict[str, Any]:
+    """Return one track as `document` gives it; a part of its state that is open is None."""
+    states = tracks.states
+    theta, rho = (float(column[index]) for column in lines)
+    return {
+        "theta_deg": math.degrees(tracks.theta[index]),
+        "rho": float(tracks.rho[index]),
+        "score": _plain(tracks.score[index]),
+        "plots": [int(row) for row in rows[tracks.plots[index]]],
+        "position": _vector(states.position[index]),
+        "velocity": _vector(states.velocity[index]),
+        "time": _number(states.time[index]),
+        "first_scan": int(states.scan[index]),
+        "covariance": _matrix(states.covariance[index]),
+        "confirmed_scan": int(tracks.confirmed_scan[index]),
+        "fitted_theta_deg": _number(math.degrees(theta)),
+        "fitted_rho": _number(rho),
+    }
 
 
 def write_accumulator(found: Initiation, path: Path) -> None:
@@ -304,6 +314,8 @@ def notes(found: Initiation) -> list[str]:
     said = []
     if found.recording.plots.position.shape[1] > found.algorithm.dimensions:
         said.append(f"{found.algorithm.name} works in the plane: the column z is ignored")
+    if len(found.tracks) and np.isnan(found.tracks.states.covariance).all():
+        said.append("the noise is not known, so that states have no covariance: give --sigma or --like")
     if found.total > len(found.tracks):
         said.append(
             f"{found.total:,} tracks were found; the {len(found.tracks):,} strongest are given (see --most)"
@@ -322,5 +334,9 @@ def _number(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def _vector(values: np.ndarray[Any, np.dtype[np.float64]]) -> list[float] | None:
+def _vector(values: Array) -> list[float] | None:
     return [float(value) for value in values] if np.isfinite(values).all() else None
+
+
+def _matrix(values: Array) -> list[list[float]] | None:
+    return [[float(value) for value in row] for row in values] if np.isfinite(values).all() else None

@@ -170,7 +170,14 @@ def _written(value: Any, depth: int) -> str:
 
 
 def track_csv(tracks: Tracks) -> str:
-    """Return tracks as CSV: line, score, number of plots, position, velocity."""
+    """Return tracks as CSV: line, score, number of plots, state and scan of confirmation.
+
+    Of a covariance each element stands once: `covariance.x.vy` is that of x with the velocity in y.
+    """
+    states = tracks.states
+    axes = "xyz"[: states.dimensions]
+    names = [*axes, *(f"v{axis}" for axis in axes)]
+    pairs = [(i, j) for i in range(len(names)) for j in range(i, len(names))]
     return csv_text(
         [
             {
@@ -178,8 +185,14 @@ def track_csv(tracks: Tracks) -> str:
                 "rho": float(tracks.rho[index]),
                 "score": float(tracks.score[index]),
                 "plots": len(tracks.plots[index]),
-                "position": [float(value) for value in tracks.position[index]],
-                "velocity": [float(value) for value in tracks.velocity[index]],
+                "position": [float(value) for value in states.position[index]],
+                "velocity": [float(value) for value in states.velocity[index]],
+                "time": float(states.time[index]),
+                "first_scan": int(states.scan[index]),
+                "confirmed_scan": int(tracks.confirmed_scan[index]),
+                "covariance": {
+                    f"{names[i]}.{names[j]}": float(states.covariance[index, i, j]) for i, j in pairs
+                },
             }
             for index in range(len(tracks))
         ]

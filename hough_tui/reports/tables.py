@@ -209,7 +209,7 @@ def _track_notes(document: Document, tracks: Sequence[Document], found: int) -> 
     if len(times) == 1 and (time := times.pop()) is not None:
         parts.append(f"Position and velocity at {as_given(time)} s, heading clockwise from north.")
     elif tracks:
-        parts.append("Heading clockwise from north.")
+        parts.append("Position and velocity at the first plot of each track, heading clockwise from north.")
     votes = document.get("accumulator") or {}
     sizes = [number(votes.get(key)) for key in ("theta_bins", "rho_bins", "votes", "max")]
     lines = [" ".join(parts)]

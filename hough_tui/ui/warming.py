@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from algorithms.association import with_states
 from algorithms.errors import RequestError
 from algorithms.initiators.base import ChunkInitiator
 from algorithms.initiators.registry import initiators
@@ -72,12 +71,10 @@ def _warm_initiators(scenario: Scenario) -> None:
             continue
         try:
             parameters = algorithm.parameters.model_validate({}).resolved(context)
-            tracks = algorithm.initiate_chunk(drawn.chunk, context, parameters)
+            tracks = algorithm.tracks_of_chunk(drawn.chunk, context, parameters, plots=True, states=True)
         except RequestError:
             # A plug-in may want more than this scene has. Nobody asked for it yet: it says so when run.
             continue
-        tracks = algorithm.associate_chunk(drawn.chunk, tracks, context, parameters)
-        with_states(drawn.chunk.trial(0), tracks, algorithm.dimensions)
         algorithm.accumulator(drawn.chunk.trial(0), context, parameters)
         for criterion in (Criterion(rho=1.0), Criterion(plots=2)):
             score(tracks, known, drawn.chunk.offsets, criterion)

@@ -7,9 +7,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from algorithms.association import SEEDS, associate, with_states
+from algorithms.association import SEEDS, associate
+from algorithms.context import Context
 from algorithms.hough.lines import line_distance, line_through
-from algorithms.plots import PlotChunk, Plots
+from algorithms.kinematics.states import with_states
+from algorithms.plots import PlotChunk
 from algorithms.tracks import TrackChunk
 from scenarios.simulate import draw, true_lines
 from scenarios.world import World
@@ -35,6 +37,12 @@ def rows_of(tracks, number=0):
     return [int(row) for row in tracks.plots[number] if row >= 0]
 
 
+def states_of(chunk, tracks):
+    """Return the tracks of a chunk of one trial with their states."""
+    context = Context(scans=20, interval=4.0, sigma=(0.1, 0.1))
+    return with_states(chunk, tracks.with_confirmation(19), context).only_trial
+
+
 def one_trial(chunk, tracks, trial):
     part = slice(tracks.offsets[trial], tracks.offsets[trial + 1])
     count = tracks.offsets[trial + 1] - tracks.offsets[trial]
@@ -42,7 +50,7 @@ def one_trial(chunk, tracks, trial):
         np.array([0, count]), tracks.theta[part], tracks.rho[part], tracks.score[part],
         tracks.votes_outside[trial : trial + 1], tracks.plots[part],
     )  # fmt: skip
-    return with_states(chunk.trial(trial), alone)
+    return states_of(chunk.trial(trial).chunk(), alone)
 
 
 headings = st.floats(0, 2 * math.pi)
@@ -70,10 +78,10 @@ def test_a_target_among_clutter_beside_its_line_keeps_its_own_plots(
     line = line_through(start, way)
     found = associate(chunk_of(rows), tracks_on(line), 1.0, 0.05)
     assert rows_of(found) == own
-    states = with_states(chunk_of(rows).trial(0), found)
-    assert states.velocity[0] == pytest.approx(speed * way, abs=1e-9)
-    assert states.position[0] == pytest.approx(start, abs=1e-9)
-    assert line_distance(states.fitted_theta[0], states.fitted_rho[0], *line) == pytest.approx(
+    tracks = states_of(chunk_of(rows), found)
+    assert tracks.states.velocity[0] == pytest.approx(speed * way, abs=1e-9)
+    assert tracks.states.position[0] == pytest.approx(start, abs=1e-9)
+    assert line_distance(tracks.states.lines[0][0], tracks.states.lines[1][0], *line) == pytest.approx(
         (0, 0), abs=1e-9
     )
 
@@ -121,36 +129,36 @@ def test_trials_and_tracks_may_be_missing(chunk_of):
     assert associate(chunk_of([], [(0, 1.0, 0.0)]), tracks_on(trials=2), 1.0, 1.0).plots.shape[0] == 0
     found = associate(chunk_of([], [(0, 1.0, 0.0), (1, 1.0, 1.0)], []), tracks_on(line, trials=3), 1.0, 1.0)
     assert [rows_of(found, number) for number in range(3)] == [[], [0, 1], []]
-    empty = with_states(chunk_of([]).trial(0), associate(chunk_of([]), tracks_on(line), 1.0, 1.0))
+    empty = states_of(chunk_of([]), associate(chunk_of([]), tracks_on(line), 1.0, 1.0))
     assert len(empty) == 1
-    assert np.isnan(empty.velocity).all()
-    assert np.isnan(empty.fitted_theta).all()
+    assert np.isnan(empty.states.velocity).all()
+    assert np.isnan(empty.states.lines[0]).all()
     assert [len(rows) for rows in empty.plots] == [0]
 
 
 def test_one_plot_is_a_track_without_velocity(chunk_of):
     chunk = chunk_of([(3, 2.0, 7.0)])
-    states = with_states(chunk.trial(0), associate(chunk, tracks_on((0.0, 1.5)), 1.0, 0.1))
-    assert [rows.tolist() for rows in states.plots] == [[0]]
-    assert states.position.tolist() == [[2.0, 7.0]]
-    assert np.isnan(states.velocity).all()
-    assert np.isnan(states.fitted_rho).all()
-    assert states.time == 12.0
+    tracks = states_of(chunk, associate(chunk, tracks_on((0.0, 1.5)), 1.0, 0.1))
+    assert [rows.tolist() for rows in tracks.plots] == [[0]]
+    assert tracks.states.position.tolist() == [[2.0, 7.0]]
+    assert np.isnan(tracks.states.velocity).all()
+    assert np.isnan(tracks.states.lines[1]).all()
+    assert tracks.states.time.tolist() == [12.0]
 
 
 def test_identical_plots_are_a_target_that_stands_still(chunk_of):
     chunk = chunk_of([(scan, 2.0, 7.0) for scan in (0, 0, 1, 1, 1, 2)])
-    states = with_states(chunk.trial(0), associate(chunk, tracks_on((0.0, 2.0)), 1.0, 0.1))
-    assert chunk.scan[states.plots[0]].tolist() == [0, 1, 2]
-    assert states.velocity.tolist() == [[0.0, 0.0]]
-    assert states.position[0] == pytest.approx([2.0, 7.0])
+    tracks = states_of(chunk, associate(chunk, tracks_on((0.0, 2.0)), 1.0, 0.1))
+    assert chunk.scan[tracks.plots[0]].tolist() == [0, 1, 2]
+    assert tracks.states.velocity.tolist() == [[0.0, 0.0]]
+    assert tracks.states.position[0] == pytest.approx([2.0, 7.0])
 
 
 def test_plots_of_one_scan_give_the_nearest_to_the_line(chunk_of):
     chunk = chunk_of([(0, 2.5, 7.0), (0, 1.9, -7.0), (0, 2.0, 30.0), (0, 2.2, 1.0)])
-    states = with_states(chunk.trial(0), associate(chunk, tracks_on((0.0, 2.0)), 1.0, 0.1))
-    assert [rows.tolist() for rows in states.plots] == [[2]]
-    assert np.isnan(states.velocity).all()
+    tracks = states_of(chunk, associate(chunk, tracks_on((0.0, 2.0)), 1.0, 0.1))
+    assert [rows.tolist() for rows in tracks.plots] == [[2]]
+    assert np.isnan(tracks.states.velocity).all()
 
 
 def test_a_plot_nearer_to_the_line_gives_way_to_one_nearer_to_the_motion(chunk_of):
@@ -176,9 +184,9 @@ def test_more_plots_beside_a_line_than_are_paired_still_give_the_motion():
     position += generator.normal(0, 0.01, position.shape)
     chunk = PlotChunk(scan, scan * 4.0, position, np.array([0, len(scan)]))
     found = associate(chunk, tracks_on((0.0, 0.0)), 1.0, 0.1)
-    states = with_states(chunk.trial(0), found)
-    assert chunk.scan[states.plots[0]].tolist() == list(range(8))
-    assert states.velocity[0] == pytest.approx([0.0, 0.5], abs=0.005)
+    tracks = states_of(chunk, found)
+    assert chunk.scan[tracks.plots[0]].tolist() == list(range(8))
+    assert tracks.states.velocity[0] == pytest.approx([0.0, 0.5], abs=0.005)
 
 
 def test_scans_may_be_numbered_from_anywhere_and_times_lie_far_from_zero():
@@ -190,10 +198,10 @@ def test_scans_may_be_numbered_from_anywhere_and_times_lie_far_from_zero():
     late = PlotChunk(scan + np.int32(2_000_000_000), 1.7e9 + scan * 4.0, position, np.array([0, 6]))
     found = [associate(chunk, line, 0.5, 0.2) for chunk in (early, late)]
     assert found[0].plots.tolist() == found[1].plots.tolist() == [list(range(6))]
-    states = [with_states(chunk.trial(0), tracks) for chunk, tracks in zip((early, late), found, strict=True)]
-    assert states[0].velocity == pytest.approx(states[1].velocity, abs=1e-9)
-    assert states[0].position == pytest.approx(states[1].position, abs=1e-9)
-    assert states[1].time == 1.7e9
+    states = [states_of(chunk, tracks) for chunk, tracks in zip((early, late), found, strict=True)]
+    assert states[0].states.velocity == pytest.approx(states[1].states.velocity, abs=1e-9)
+    assert states[0].states.position == pytest.approx(states[1].states.position, abs=1e-9)
+    assert states[1].states.time.tolist() == [1.7e9]
 
 
 def test_coordinates_of_a_billion_give_the_same_plots_and_velocity():
@@ -207,32 +215,9 @@ def test_coordinates_of_a_billion_give_the_same_plots_and_velocity():
         line = line_through(np.array([3.0, 5.0]) + shift, [0.5, 0.75])
         found = associate(chunk, tracks_on(line), 0.5, 0.3)
         assert rows_of(found) == list(range(6))
-        states.append(with_states(chunk.trial(0), found))
-    assert states[1].velocity == pytest.approx(states[0].velocity, abs=1e-6)
-    assert states[1].position - 1e9 == pytest.approx(states[0].position, abs=1e-5)
-
-
-@steady
-@given(seeds, st.integers(2, 12))
-def test_states_are_the_least_squares_lines_of_numpy(seed, count):
-    generator = np.random.default_rng(seed)
-    time = 100.0 + np.sort(generator.uniform(0, 60, count))
-    plots = Plots(np.arange(count, dtype=np.int32), time, generator.uniform(-50, 50, (count, 3)))
-    held = np.sort(generator.choice(count, generator.integers(2, count + 1), replace=False))
-    rows = np.full((1, count), -1, np.int64)
-    rows[0, : len(held)] = held
-    zero = np.zeros(1)
-    state = with_states(plots, TrackChunk(np.array([0, 1]), zero, zero, zero, np.zeros(1, np.int64), rows))
-    assert state.time == time[0]
-    assert state.plots[0].tolist() == held.tolist()
-    slope, start = np.polyfit(time[held] - time[0], plots.position[held, :2], 1)
-    # Plots of nearly one time leave the slope open.
-    tolerance = 1e-9 * max(1.0, np.abs(slope).max() ** 2)
-    assert state.velocity[0] == pytest.approx(slope, abs=tolerance)
-    assert state.position[0] == pytest.approx(start, abs=100 * tolerance)
-    line = line_through(start, slope)
-    angle, _ = line_distance(state.fitted_theta[0], state.fitted_rho[0], *line)
-    assert angle < 1e-6
+        states.append(states_of(chunk, found))
+    assert states[1].states.velocity == pytest.approx(states[0].states.velocity, abs=1e-6)
+    assert states[1].states.position - 1e9 == pytest.approx(states[0].states.position, abs=1e-5)
 
 
 def test_velocities_in_the_course_report_scene(course):
@@ -246,17 +231,17 @@ def test_velocities_in_the_course_report_scene(course):
     found = entry.algorithm.associate_chunk(chunk, found, scenario.context, parameters)
     errors, own = [], []
     for trial in range(trials):
-        states = one_trial(chunk, found, trial)
+        tracks = one_trial(chunk, found, trial)
         origin = drawn.origin[chunk.offsets[trial] :]
         for number, (target, *line) in enumerate(
             zip(scenario.targets, *true_lines(scenario, drawn.shift[trial]), strict=True)
         ):
-            angle, distance = line_distance(states.theta, states.rho, *line)
+            angle, distance = line_distance(tracks.theta, tracks.rho, *line)
             matching = np.flatnonzero((angle <= math.radians(6)) & (distance <= 3.0))
             if len(matching):
-                best = matching[np.argmax(states.score[matching])]
-                errors.append(math.hypot(*(states.velocity[best] - target.velocity)))
-                own.append((origin[states.plots[best]] == number).sum())
+                best = matching[np.argmax(tracks.score[matching])]
+                errors.append(math.hypot(*(tracks.states.velocity[best] - target.velocity)))
+                own.append((origin[tracks.plots[best]] == number).sum())
     # 99.5 % of the targets are found; four standard errors of 1,000 such finds are .9 %.
     assert len(errors) >= 2 * trials * (0.995 - 0.009)
     assert np.isfinite(errors).all()

@@ -60,8 +60,9 @@ class Ends(plugin.Initiator):
         place, velocity = state[:, :2], state[:, 2:]
         theta, rho = plugin.line_through(place, velocity)
         score = np.array([float(len(rows)) for rows in found])
-        time = plots.first_time
-        return plugin.Tracks(theta, rho, score, tuple(found), place, velocity, theta, rho, time)
+        states = plugin.fitted_states(plots, found, context)
+        confirmed = np.full(len(found), context.scans - 1)
+        return plugin.Tracks(theta, rho, score, tuple(found), states, confirmed)
 '''
 
 SET = """\

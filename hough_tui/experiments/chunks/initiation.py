@@ -169,7 +169,6 @@ class ScenarioDraws(SharedDraws):
             )
             return told
         began = time.thread_time()
-        tracks = algorithm.initiate_chunk(chunk, context, run.parameters)
-        if any(self.cells[cell].criterion.plots is not None for cell in run.cells):
-            tracks = algorithm.associate_chunk(chunk, tracks, context, run.parameters)
+        plots = any(self.cells[cell].criterion.plots is not None for cell in run.cells)
+        tracks = algorithm.tracks_of_chunk(chunk, context, run.parameters, plots=plots, states=False)
         return tracks, time.thread_time() - began

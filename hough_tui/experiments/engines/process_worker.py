@@ -15,7 +15,7 @@ from algorithms.errors import RequestError
 from algorithms.initiators.registry import initiator
 from algorithms.parameters import Parameters
 from algorithms.plots import PlotChunk
-from algorithms.tracks import TrackChunk, Tracks
+from algorithms.tracks import TrackChunk, Tracks, TrackStates
 
 
 def initiate_trials(
@@ -31,13 +31,13 @@ def initiate_trials(
     """
     algorithm = initiator(name)
     began = time.thread_time()
-    found = []
+    batches = []
     for index in range(chunk.trials):
         plots = chunk.trial(index)
         tracks = algorithm.initiate(plots, context, parameters)
         check(tracks, len(plots), name)
-        found.append(tracks)
-    return gathered(found), time.thread_time() - began
+        batches.append(tracks)
+    return gathered(batches), time.thread_time() - began
 
 
 def check(tracks: Tracks, plots: int, name: str) -> None:
@@ -48,8 +48,8 @@ def check(tracks: Tracks, plots: int, name: str) -> None:
     RequestError
         Where columns differ in length, or a track names a plot that there is not.
     """
-    lengths = {len(column) for column in (tracks.theta, tracks.rho, tracks.score, tracks.plots)}
-    if len(lengths) != 1:
+    columns = (tracks.theta, tracks.rho, tracks.score, tracks.plots, tracks.confirmed_scan, *tracks.states)
+    if len({len(column) for column in columns}) != 1:
         raise RequestError(
             f"initiator {name}: its tracks have columns of different lengths; mend the plug-in"
         )
@@ -88,4 +88,6 @@ def gathered(trials: list[Tracks]) -> TrackChunk:
         np.concatenate([tracks.score for tracks in trials]),
         np.zeros(len(trials), np.int64),
         plots,
+        confirmed_scan=np.concatenate([tracks.confirmed_scan for tracks in trials]),
+        states=TrackStates(*map(np.concatenate, zip(*(tracks.states for tracks in trials), strict=True))),
     )

@@ -70,7 +70,7 @@ class TrackGrid(DataTable[Text]):
         tracks = seen.tracks
         self._is_filling = True
         self.clear(columns=True)
-        is_in_space = tracks.velocity.shape[1] == 3
+        is_in_space = tracks.states.velocity.shape[1] == 3
         headings = HEADINGS
         if is_in_space:
             lines = ("θ °", "ρ {unit}")
@@ -80,13 +80,13 @@ class TrackGrid(DataTable[Text]):
             self.add_column(label, width=max(width, label.cell_len))
         for index in range(min(len(tracks), MOST_ROWS)):
             state = ("–", "dim") if seen.state is None else STATES[int(seen.state[index])]
-            speed, heading = _course(tracks.velocity[index])
+            speed, heading = _course(tracks.states.velocity[index])
             cells = [f"{index}", f"{tracks.score[index]:g}", f"{len(tracks.plots[index])}"]
             if not is_in_space:
                 cells += [f"{math.degrees(tracks.theta[index]):.2f}", f"{tracks.rho[index]:.2f}"]
             cells += [speed, heading]
             if is_in_space:
-                cells.append(_climb(tracks.velocity[index]))
+                cells.append(_climb(tracks.states.velocity[index]))
             first, *rest = (Text(cell, justify="right") for cell in cells)
             self.add_row(first, Text(state[0], style=state[1]), *rest)
         self._is_filling = False

@@ -212,8 +212,8 @@ def test_a_track_has_the_line_and_the_state_of_its_plots():
     assert tracks.score.tolist() == [3.0]
     assert math.degrees(tracks.theta[0]) == pytest.approx(math.degrees(math.atan2(1.0, -0.5)))
     assert tracks.rho[0] == pytest.approx(0.0, abs=1e-12)
-    assert tracks.velocity[0] == pytest.approx([0.25, 0.125])
-    assert tracks.position[0] == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert tracks.states.velocity[0] == pytest.approx([0.25, 0.125])
+    assert tracks.states.position[0] == pytest.approx([0.0, 0.0], abs=1e-12)
     assert (tracks.fitted_theta[0], tracks.fitted_rho[0]) == pytest.approx((tracks.theta[0], 0.0), abs=1e-12)
 
 

@@ -13,7 +13,7 @@ from algorithms.initiators import registry
 from algorithms.initiators.base import ChunkInitiator, Initiator
 from algorithms.parameters import Parameters, parameter
 from algorithms.plots import Plots
-from algorithms.tracks import Tracks
+from algorithms.tracks import Tracks, TrackStates
 
 ALWAYS = ["modified", "sequential", "standard"]
 
@@ -26,12 +26,10 @@ class AnyPlot(Initiator):
     parameters = Parameters
 
     def initiate(self, plots, context, parameters):
-        nothing = np.full(len(plots), np.nan)
         return Tracks(
             np.zeros(len(plots)), plots.position[:, 0].copy(), np.ones(len(plots)),
             tuple(np.array([row]) for row in range(len(plots))),
-            plots.position[:, :2].copy(), np.column_stack([nothing, nothing]), nothing, nothing,
-            plots.first_time,
+            TrackStates.open(len(plots), 2), np.full(len(plots), context.scans - 1),
         )  # fmt: skip
 
 

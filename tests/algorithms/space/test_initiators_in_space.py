@@ -110,8 +110,8 @@ def test_a_trial_gives_the_same_in_a_chunk_as_alone(approach, name):
         held = [row[row >= 0].tolist() for row in tracks.plots[begin:end]]
         assert held == [rows.tolist() for rows in alone.plots]
         # A track's line is that of its state, which is worked out by other code.
-        np.testing.assert_allclose(tracks.theta[begin:end], alone.fitted_theta, atol=1e-6)
-        np.testing.assert_allclose(tracks.rho[begin:end], alone.fitted_rho, rtol=1e-6, atol=0.1)
+        np.testing.assert_allclose(tracks.theta[begin:end], alone.states.lines[0], atol=1e-6)
+        np.testing.assert_allclose(tracks.rho[begin:end], alone.states.lines[1], rtol=1e-6, atol=0.1)
         assert alone.effort == {what: int(count[trial]) for what, count in tracks.effort.items()}
 
 
@@ -224,9 +224,9 @@ def test_longer_batches_and_states(name):
     tracks = algorithm.initiate(drawn.chunk.trial(0), found.context, parameters)
     best = np.argmax(tracks.score)
     assert len(tracks.plots[best]) >= 6
-    assert tracks.velocity.shape[1] == 3
+    assert tracks.states.velocity.shape[1] == 3
     # 7 scans with about 100 m of noise across: some 20 m/s.
-    np.testing.assert_allclose(tracks.velocity[best], [200, -100, 10], atol=80)
+    np.testing.assert_allclose(tracks.states.velocity[best], [200, -100, 10], atol=80)
 
 
 BESIDE = {**RADAR, "position": [15000, 0, 0], "sigma_range": 20, "sigma_azimuth_deg": 0.6}
@@ -269,13 +269,11 @@ def test_the_state_of_a_track_is_weighted_by_its_plots_own_noise():
     for trial in range(trials):
         plots = drawn.chunk.trial(trial)
         tracks = algorithm.initiate(plots, seen.context, parameters)
-        rows = tracks.plots[0]
-        weight = np.linalg.inv(plots.covariance[rows])
-        design = np.stack([np.ones(len(rows)), plots.time[rows] - tracks.time])
-        normal = np.einsum("ik,jk,kab->iajb", design, design, weight).reshape(6, 6)
-        true = np.array([[0, 20000, 3000], [200, 100, 0]], dtype=float)
-        miss = (np.stack([tracks.position[0], tracks.velocity[0]]) - true).ravel()
-        squares.append(miss @ normal @ miss)
+        states = tracks.states
+        velocity = np.array([200.0, 100.0, 0.0])
+        true = np.concatenate([[0, 20000, 3000] + velocity * states.time[0], velocity])
+        miss = np.concatenate([states.position[0], states.velocity[0]]) - true
+        squares.append(miss @ np.linalg.inv(states.covariance[0]) @ miss)
     low, high = stats.chi2(6 * trials).ppf([0.0005, 0.9995])
     assert low < np.sum(squares) < high
 

@@ -89,7 +89,12 @@ def test_the_document_has_the_form_that_scripts_rely_on(document, simulated):
         assert (track["rho"] + 150) / 0.6 % 1 == pytest.approx(0.5, abs=1e-6)
         scans = [int(plots[plot]["scan"]) for plot in track["plots"]]
         assert scans == sorted(set(scans))
-        assert track["time"] == 0.0
+        assert (track["first_scan"], track["confirmed_scan"]) == (scans[0], 14)
+        assert track["time"] == float(plots[track["plots"][0]]["time"])
+        covariance = np.array(track["covariance"], dtype=float)
+        assert covariance.shape == ((4, 4) if len(scans) > 1 else ())
+        if len(scans) > 1:
+            assert np.linalg.eigvalsh(covariance).min() > 0
 
 
 @pytest.mark.parametrize("order", ["as simulated", "shuffled"])
@@ -290,7 +295,7 @@ def test_a_track_of_one_plot_has_no_velocity(document, tmp_path):
     assert found["tracks"]
     for track in found["tracks"]:
         assert track["plots"] == [0]
-        assert track["velocity"] is None
+        assert track["velocity"] is track["covariance"] is None
         assert track["fitted_theta_deg"] is None
 
 
@@ -333,7 +338,8 @@ def test_selected_scans_keep_the_rows_of_the_file(document, simulated):
     assert found["plots"] == len(chosen)
     assert found["tracks"]
     assert all(set(track["plots"]) <= chosen for track in found["tracks"])
-    assert all(track["time"] == 20.0 for track in found["tracks"])
+    for track in found["tracks"]:
+        assert track["time"] == float(plots[track["plots"][0]]["time"])
 
 
 def test_the_most_tracks_are_the_strongest(cli, document, simulated):
