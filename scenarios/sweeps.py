@@ -7,7 +7,7 @@ import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar, overload
 
 from algorithms.errors import RequestError
 from algorithms.parameters import (
@@ -18,9 +18,10 @@ from algorithms.parameters import (
     numeric_paths,
     replaced,
 )
-from scenarios.entries import InitiatorEntry
-from scenarios.experiments import Experiment
+from scenarios.entries import ClusteringEntry, InitiatorEntry, WithoutClustering
+from scenarios.experiments import ClusteringExperiment, Experiment, InitiationExperiment
 from scenarios.model import Scenario, ScenarioSet
+from scenarios.scenes import Scene
 
 MOST_POINTS = 20_000
 """The most points of one experiment."""
@@ -33,39 +34,50 @@ SINGULAR = {
 }
 """How an element of a list of a set is called, and a swept field of it begins."""
 
-Elements = Mapping[str, Sequence[Declared | None]]
+Elements = Mapping[str, Sequence[Declared]]
 """The elements of each part, `scenario`, `initiator` and so on, in which a swept field may be."""
 
 
+WorldT = TypeVar("WorldT", bound=Scenario | Scene)
+EntryT = TypeVar("EntryT", bound=InitiatorEntry | ClusteringEntry)
+
+Stage = ClusteringEntry | WithoutClustering | None
+"""How points become plots; None where plots are drawn."""
+
+
 @dataclass(frozen=True, slots=True)
-class Point:
+class Point(Generic[WorldT, EntryT]):
     """One cell of an experiment's table.
 
     Attributes
     ----------
-    elements : of each part (`scenario`, `initiator` and so on) one, with the swept values put in
-    parameters : those of the last of them, which runs, with every `auto` worked out
+    world : what is drawn, with the swept values put in
+    entry : what runs on it, likewise
+    stage : how the points of a scenario become plots before an initiator runs
+    parameters : those of the entry, with every `auto` worked out
     swept : the swept values by their keys as they were written
+    names : of what was combined, by part (`scenario`, `initiator` and so on)
     """
 
-    elements: Mapping[str, Any]
+    world: WorldT
+    entry: EntryT
+    stage: Stage
     parameters: Any
     swept: dict[str, int | float]
-
-    @property
-    def scenario(self) -> Scenario:
-        """The scenario, of an experiment that has some."""
-        found: Scenario = self.elements["scenario"]
-        return found
-
-    @property
-    def entry(self) -> InitiatorEntry:
-        """The initiator entry, of an experiment that has some."""
-        found: InitiatorEntry = self.elements["initiator"]
-        return found
+    names: Mapping[str, str]
 
 
-def points(given: ScenarioSet, experiment: Experiment) -> Iterator[Point]:
+@overload
+def points(
+    scenario_set: ScenarioSet, experiment: InitiationExperiment
+) -> Iterator[Point[Scenario, InitiatorEntry]]: ...
+@overload
+def points(
+    scenario_set: ScenarioSet, experiment: ClusteringExperiment
+) -> Iterator[Point[Scene, ClusteringEntry]]: ...
+@overload
+def points(scenario_set: ScenarioSet, experiment: Experiment) -> Iterator[Point[Any, Any]]: ...
+def points(scenario_set: ScenarioSet, experiment: Experiment) -> Iterator[Point[Any, Any]]:
     """Yield the points of an experiment, scenario by scenario, initiator by initiator.
 
     Raises
@@ -74,7 +86,7 @@ def points(given: ScenarioSet, experiment: Experiment) -> Iterator[Point]:
         Where a swept key names no numeric field, or a value is not allowed; its path begins
         at the experiment.
     """
-    parts: Elements = {SINGULAR[part]: given.chosen(experiment, part) for part in experiment.parts}
+    parts: Elements = {SINGULAR[part]: scenario_set.chosen(experiment, part) for part in experiment.parts}
     total = 1
     for several in (*parts.values(), *experiment.sweep.values()):
         total *= len(several)
@@ -104,24 +116,26 @@ def _point(
     experiment: Experiment,
     places: Sequence[tuple[str, Path]],
     values: Sequence[int | float],
-) -> Point:
+) -> Point[Any, Any]:
     changes: dict[str, dict[Path, int | float]] = {part: {} for part in elements}
     for (part, path), value in zip(places, values, strict=True):
         changes[part][path] = value
     keys = dict(zip(places, experiment.sweep, strict=True))
-    found: dict[str, Any] = {}
+    combined: dict[str, Any] = {}
     for part, element in elements.items():
         try:
-            found[part] = element if element is None else replaced(element, changes[part])
+            combined[part] = replaced(element, changes[part])
         except FieldError as error:
             raise _placed(error, part, keys, experiment, values) from None
-    world, *_, method = found
+    world, *stages, entry = combined.values()
     try:
-        parameters = found[method].resolved_on(found[world])
+        parameters = entry.resolved_on(world)
     except RequestError as error:
-        what = f"{method} {found[method].name} on {found[world].name}"
+        what = f"{list(combined)[-1]} {entry.name} on {world.name}"
         raise FieldError(Problem((), f"{what}: {error}")) from None
-    return Point(found, parameters, dict(zip(experiment.sweep, values, strict=True)))
+    swept = dict(zip(experiment.sweep, values, strict=True))
+    names = {part: element.name for part, element in combined.items()}
+    return Point(world, entry, stages[0] if stages else None, parameters, swept, names)
 
 
 def _placed(
@@ -215,7 +229,7 @@ def _is_named(path: Path, wanted: Path, *, whole: bool) -> bool:
     return not whole or not any(isinstance(name, str) for name in left)
 
 
-def _common(elements: Sequence[Declared | None]) -> list[Path]:
+def _common(elements: Sequence[Declared]) -> list[Path]:
     """Return the numeric fields that all elements have."""
-    paths = [[] if element is None else list(numeric_paths(element)) for element in elements]
+    paths = [list(numeric_paths(element)) for element in elements]
     return [path for path in paths[0] if all(path in others for others in paths)] if paths else []

@@ -1,4 +1,4 @@
-"""What a run is made of, whatever is tried: cells, the draws that they share, and per-trial columns.
+"""Parts of a run that do not depend on the kind of experiment: cells, and the draws that they share.
 
 A kind of experiment brings its own `Cell`, `SharedDraws` and `Columns`; plan, engine, results and store
 know no more of it than what stands here.
@@ -7,15 +7,13 @@ know no more of it than what stands here.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
-from typing import Any, Self
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
+from hough_tui.experiments.columns.schema import Columns
 from scenarios.experiments import Experiment
-from scenarios.sweeps import Point
+from scenarios.sweeps import EntryT, Point, WorldT
 
 Row = dict[str, Any]
 
@@ -26,37 +24,8 @@ DETECTIONS_A_CHUNK = 60_000
 """Plots that a chunk is expected to hold: some twenty milliseconds of work, not to be interrupted."""
 
 
-class Columns(ABC):
-    """The columns of one cell, one row a trial; the subclasses are dataclasses of arrays.
-
-    Attributes
-    ----------
-    trial : int32 (trials,), which trials of the experiment they are, rising
-    """
-
-    trial: NDArray[np.int32]
-
-    def arrays(self) -> dict[str, NDArray[Any]]:
-        """Return the columns by name."""
-        return {column.name: getattr(self, column.name) for column in fields(self)}  # type: ignore[arg-type]
-
-    @classmethod
-    def of(cls, arrays: Mapping[str, NDArray[Any]]) -> Self:
-        """Return the columns that `arrays` gave."""
-        return cls(**{column.name: arrays[column.name] for column in fields(cls)})  # type: ignore[arg-type]
-
-    def part(self, rows: slice | NDArray[np.bool_]) -> Self:
-        """Return the columns of some of the trials."""
-        return type(self).of(
-            {
-                name: column[rows] if len(column) == len(self.trial) else column
-                for name, column in self.arrays().items()
-            }
-        )
-
-
 @dataclass(frozen=True, slots=True)
-class Cell(ABC):
+class Cell(ABC, Generic[WorldT, EntryT]):
     """One row of the result: what runs on what, both with the swept values put in.
 
     Attributes
@@ -67,7 +36,17 @@ class Cell(ABC):
 
     set_name: str
     experiment: Experiment
-    point: Point
+    point: Point[WorldT, EntryT]
+
+    @property
+    def world(self) -> WorldT:
+        """What is drawn: a scenario or a scene."""
+        return self.point.world
+
+    @property
+    def entry(self) -> EntryT:
+        """The entry of what runs on it."""
+        return self.point.entry
 
     @property
     def parameters(self) -> Any:
@@ -80,19 +59,9 @@ class Cell(ABC):
         return self.point.swept
 
     @property
-    def world(self) -> Any:
-        """What is drawn: a scenario or a scene."""
-        return next(iter(self.point.elements.values()))
-
-    @property
-    def entry(self) -> Any:
-        """The entry of what runs on it."""
-        return list(self.point.elements.values())[-1]
-
-    @property
-    def elements(self) -> dict[str, str]:
+    def names(self) -> Mapping[str, str]:
         """The names of what was combined, by part (`scenario`, `initiator` and so on)."""
-        return {part: element.name for part, element in self.point.elements.items() if element is not None}
+        return self.point.names
 
     @property
     def draws_key(self) -> str:
@@ -101,15 +70,15 @@ class Cell(ABC):
 
     @property
     def run_key(self) -> str:
-        """What decides what is found in a draw: cells of equal keys find it once."""
+        """What decides the outcome of a draw: cells of equal keys have the same, and score it apart."""
         return str(self.parameters.model_dump_json())
 
     def heading(self, trials: int) -> Row:
-        """Return what a row says before what was found."""
+        """Return what a row says before its figures."""
         return {
             "set": self.set_name,
             "experiment": self.experiment.name,
-            **self.elements,
+            **self.names,
             "swept": dict(self.swept),
             "trials": trials,
             "seed": self.experiment.seed,
@@ -125,8 +94,8 @@ class Cell(ABC):
         """Size of a trial's columns."""
 
     @abstractmethod
-    def empty_columns(self) -> Any:
-        """Return columns to be filled chunk by chunk."""
+    def empty_columns(self) -> Columns:
+        """Return columns to be filled part by part."""
 
     @abstractmethod
     def tally(self, columns: Any, seconds: float) -> Row:
@@ -138,66 +107,76 @@ class Cell(ABC):
         seconds : worker time from draw to score
         """
 
-    @classmethod
     @abstractmethod
-    def shared(cls, cells: Sequence[Any], runs: tuple[SharedRun, ...]) -> SharedDraws:
-        """Return the work of cells that share their draws.
+    def shared(self, runs: tuple[SharedRun[Any], ...]) -> SharedDraws[Any, Any]:
+        """Return the work of cells that share this one's draws: `runs`, of which it is the first."""
 
-        Parameters
-        ----------
-        cells : all cells of the plan
-        runs : what runs, on the draws of any of the cells named there
-        """
+
+AnyCell = Cell[Any, Any]
+"""A cell of any kind of experiment."""
+
+CellT = TypeVar("CellT", bound=AnyCell)
+PreparedT = TypeVar("PreparedT")
 
 
 @dataclass(frozen=True, slots=True)
-class SharedRun:
-    """The cells that score what is found once: one entry with one set of parameters.
+class SharedRun(Generic[CellT]):
+    """Cells that score the same outcome of the same draws: of one entry with one set of parameters.
 
     Attributes
     ----------
-    entry, parameters : what runs
-    cells : indices of the cells in the plan
+    cells : by their places in the plan, at least one
     """
 
-    entry: Any
-    parameters: Any
-    cells: tuple[int, ...]
+    cells: Mapping[int, CellT]
+
+    @property
+    def first(self) -> CellT:
+        """The first cell, whose entry and parameters are those of all."""
+        return next(iter(self.cells.values()))
 
 
 @dataclass(frozen=True, slots=True)
-class CellChunk(ABC):
-    """What the trials of a chunk gave for one cell.
+class CellPart:
+    """What consecutive trials gave for one cell.
 
     Attributes
     ----------
-    cell : index of the cell in the plan
+    cell : its place in the plan
+    columns : of these trials
     seconds : worker time from draw to score
     """
 
     cell: int
+    columns: Columns
     seconds: float
-
-    @abstractmethod
-    def fill(self, columns: Any, first: int) -> None:
-        """Put the trials into the columns of the cell, from trial `first` on."""
 
 
 @dataclass(frozen=True, slots=True)
-class SharedDraws(ABC):
-    """The cells that see the same draws: one world and one seed.
+class SharedDraws(ABC, Generic[CellT, PreparedT]):
+    """The work of cells that see the same draws: one world and one seed.
 
     Attributes
     ----------
-    cells : all cells of the plan
-    seed, trials : which draws
-    runs : what runs on them
+    runs : what runs on the draws, at least one
     """
 
-    cells: Sequence[Any]
-    seed: int
-    trials: int
-    runs: tuple[SharedRun, ...]
+    runs: tuple[SharedRun[CellT], ...]
+
+    @property
+    def first(self) -> CellT:
+        """The first cell, whose world, seed and number of trials are those of all."""
+        return self.runs[0].first
+
+    @property
+    def seed(self) -> int:
+        """Which draws."""
+        return self.first.experiment.seed
+
+    @property
+    def trials(self) -> int:
+        """How many draws."""
+        return self.first.experiment.trials
 
     @property
     @abstractmethod
@@ -215,16 +194,18 @@ class SharedDraws(ABC):
         return False
 
     @abstractmethod
-    def prepared(self) -> Any:
+    def prepared(self) -> PreparedT:
         """Return what is worked out once for all chunks."""
 
     @abstractmethod
-    def run(self, prepared: Any, first: int, trials: int, plain: Callable[..., Any]) -> Iterator[CellChunk]:
+    def run(
+        self, prepared: PreparedT, first: int, trials: int, run_in_process: Callable[..., Any]
+    ) -> Iterator[CellPart]:
         """Yield what consecutive trials give, cell by cell; to stop between two runs, stop iterating.
 
         Parameters
         ----------
         prepared : as `prepared` gave it
         first, trials : which trials
-        plain : runs a function of the module level in a worker process and returns its result
+        run_in_process : runs a function of the module level in a worker process and returns its result
         """

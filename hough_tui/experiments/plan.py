@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from algorithms.errors import RequestError
 from algorithms.parameters import unknown
-from hough_tui.experiments.cases import Cell, SharedDraws, SharedRun
+from hough_tui.experiments.cases import AnyCell, SharedDraws, SharedRun
 from hough_tui.experiments.chunks.clustering import ClusteringCell
 from hough_tui.experiments.chunks.initiation import InitiationCell
 from scenarios.experiments import ClusteringExperiment, Experiment, InitiationExperiment
 from scenarios.model import ScenarioSet
 from scenarios.sweeps import points
-
-KINDS: dict[type[Experiment], type[Cell]] = {
-    InitiationExperiment: InitiationCell,
-    ClusteringExperiment: ClusteringCell,
-}
-"""The cells of each kind of experiment."""
 
 MOST_BYTES = 4 * 2**30
 """The most memory that the per-trial columns may take."""
@@ -36,8 +31,8 @@ class Plan:
     """
 
     sets: tuple[ScenarioSet, ...]
-    cells: tuple[Cell, ...]
-    draws: tuple[SharedDraws, ...]
+    cells: tuple[AnyCell, ...]
+    draws: tuple[SharedDraws[Any, Any], ...]
 
     @property
     def trials(self) -> int:
@@ -83,10 +78,10 @@ def plan_run(
         ]
         changed.append(given.model_copy(update={"experiments": chosen}))
     cells = tuple(
-        KINDS[type(experiment)](given.name, experiment, point)
-        for given in changed
-        for experiment in given.experiments
-        for point in points(given, experiment)
+        cell
+        for scenario_set in changed
+        for experiment in scenario_set.experiments
+        for cell in cells_of(scenario_set, experiment)
     )
     if not cells:
         raise RequestError(
@@ -102,17 +97,22 @@ def plan_run(
     return Plan(tuple(changed), cells, tuple(_shared(cells)))
 
 
-def _shared(cells: Sequence[Cell]) -> list[SharedDraws]:
-    """Return the work of cells: equal draws are made once, equal results are found once."""
-    draws: dict[tuple[str, int, int], dict[str, list[int]]] = {}
+def cells_of(scenario_set: ScenarioSet, experiment: Experiment) -> Iterator[AnyCell]:
+    """Yield the cells of an experiment, in order."""
+    if isinstance(experiment, InitiationExperiment):
+        for initiation in points(scenario_set, experiment):
+            yield InitiationCell(scenario_set.name, experiment, initiation)
+    elif isinstance(experiment, ClusteringExperiment):
+        for clustering in points(scenario_set, experiment):
+            yield ClusteringCell(scenario_set.name, experiment, clustering)
+
+
+def _shared(cells: Sequence[AnyCell]) -> Iterator[SharedDraws[Any, Any]]:
+    """Group cells by shared draws, then by identical runs on them."""
+    draws: dict[tuple[str, int, int], dict[str, dict[int, AnyCell]]] = {}
     for index, cell in enumerate(cells):
         drawn = (cell.draws_key, cell.experiment.seed, cell.experiment.trials)
-        draws.setdefault(drawn, {}).setdefault(cell.run_key, []).append(index)
-    found = []
+        draws.setdefault(drawn, {}).setdefault(cell.run_key, {})[index] = cell
     for runs in draws.values():
-        shared = tuple(
-            SharedRun(cells[indices[0]].entry, cells[indices[0]].parameters, tuple(indices))
-            for indices in runs.values()
-        )
-        found.append(type(cells[shared[0].cells[0]]).shared(cells, shared))
-    return found
+        shared = tuple(SharedRun(run) for run in runs.values())
+        yield shared[0].first.shared(shared)

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.intervals import mean_interval
 from hough_tui.experiments.cases import Row
-from hough_tui.experiments.columns import TrialColumns
-
-if TYPE_CHECKING:
-    from hough_tui.experiments.chunks.initiation import InitiationCell
+from hough_tui.experiments.columns.initiation import TrialColumns
 
 
 def false_ratio(columns: TrialColumns) -> NDArray[np.float64]:
@@ -21,12 +16,11 @@ def false_ratio(columns: TrialColumns) -> NDArray[np.float64]:
     return ratio
 
 
-def tally(cell: InitiationCell, columns: TrialColumns, seconds: float) -> Row:
-    """Return the row of a cell: the document that tables, charts and files are made of.
+def tally(columns: TrialColumns, seconds: float) -> Row:
+    """Return the figures of a cell's row.
 
     Parameters
     ----------
-    cell : what ran
     columns : what each trial gave, at least one trial
     seconds : worker time from draw to score, the control left out
     """
@@ -35,8 +29,6 @@ def tally(cell: InitiationCell, columns: TrialColumns, seconds: float) -> Row:
     control = _rate(columns.control_found)
     ratio = false_ratio(columns)
     return {
-        **cell.heading(trials),
-        "target_names": [target.name for target in cell.scenario.targets],
         "success_rate": success[0],
         "success_ci95": success[1],
         "success_by_target": [float(rate) for rate in columns.found.mean(axis=0)],
@@ -53,8 +45,6 @@ def tally(cell: InitiationCell, columns: TrialColumns, seconds: float) -> Row:
         "votes_outside_per_trial": float(columns.votes_outside.mean()),
         "pure_track_ratio": _pure(columns),
         "effort_per_trial": {name: float(counted.mean()) for name, counted in columns.effort.items()},
-        "criterion": cell.criterion.document,
-        "parameters": cell.parameters.model_dump(mode="json"),
         "seconds_per_trial": seconds / trials,
     }
 

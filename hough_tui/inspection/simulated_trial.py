@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from hough_tui.experiments.chunks.plot_sources import Stage, plots_of
+from hough_tui.experiments.chunks.plot_sources import plots_of
 from scenarios.detections import ResolvedWorld, draw_points
 from scenarios.front_end import every_point, measured_points
 from scenarios.model import Scenario
 from scenarios.recordings.csv_plots import write_plots
+from scenarios.sweeps import Stage
 
 
 def simulated(scenario: Scenario, seed: int, trial: int, stage: Stage = None) -> str:

@@ -14,12 +14,13 @@ from algorithms.plots import Plots
 from algorithms.scoring import score
 from algorithms.space.planes import PlaneVotes
 from algorithms.tracks import Tracks
-from hough_tui.experiments.chunks.plot_sources import Stage, plots_of
+from hough_tui.experiments.chunks.plot_sources import plots_of
 from hough_tui.experiments.engines.process_worker import gathered
 from scenarios.entries import InitiatorEntry
 from scenarios.experiments import MatchCriterion
 from scenarios.model import Scenario
 from scenarios.simulate import Draw, true_paths, truth
+from scenarios.sweeps import Stage
 
 MOST_TRACKS = 500
 """How many tracks of a trial are looked at; nobody looks at more, and each must find its plots."""

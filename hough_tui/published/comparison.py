@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from algorithms.errors import RequestError
 from algorithms.intervals import Z95, count_interval, effective_count, mean_interval, normal_interval
 from algorithms.parameters import unknown
-from hough_tui.experiments.cases import Cell, Columns
+from hough_tui.experiments.cases import AnyCell
+from hough_tui.experiments.columns.schema import Columns
 from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.plan import Plan, plan_run
 from hough_tui.published import clustering, course, par, thesis
@@ -66,7 +67,7 @@ def compare(table: PublishedTable, job: Job) -> dict[str, Any]:
     }
 
 
-def _columns_of(entry: Entry, found: Sequence[tuple[Cell, Columns]]) -> Columns:
+def _columns_of(entry: Entry, found: Sequence[tuple[AnyCell, Columns]]) -> Columns:
     return next(
         columns
         for cell, columns in found

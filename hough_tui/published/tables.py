@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hough_tui.experiments.columns import TrialColumns
+from hough_tui.experiments.columns.initiation import TrialColumns
 from hough_tui.experiments.tallies import false_ratio
 
 PerTrial = Callable[[Any], NDArray[np.float64]]

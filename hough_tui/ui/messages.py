@@ -8,7 +8,7 @@ from textual.message import Message
 
 if TYPE_CHECKING:
     from algorithms.parameters import Path
-    from hough_tui.experiments.cases import Cell
+    from hough_tui.experiments.cases import AnyCell
 
 
 class SetShown(Message):
@@ -67,6 +67,6 @@ class TrialOpened(Message):
     trial : which draw
     """
 
-    def __init__(self, cell: Cell, trial: int) -> None:
+    def __init__(self, cell: AnyCell, trial: int) -> None:
         super().__init__()
         self.cell, self.trial = cell, trial

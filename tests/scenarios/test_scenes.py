@@ -72,10 +72,10 @@ def test_an_experiment_without_a_kind_is_of_initiation():
 def test_points_run_scene_by_scene_with_auto_worked_out():
     given = parsed(lambda data: data["experiments"][1].update(sweep={"scene.interference": [0, 7]}))
     every = list(points(given, given.experiments[0]))
-    names = [(found.elements["scene"].name, found.elements["clustering"].name) for found in every]
+    names = [(found.world.name, found.entry.name) for found in every]
     assert names == [(scene, how) for scene in ("pair", "empty") for how in ("recommended", "sparse")]
     told = list(points(given, given.experiments[1]))
-    assert [found.elements["scene"].interference for found in told] == [0, 7]
+    assert [found.world.interference for found in told] == [0, 7]
     assert [found.parameters.number for found in told] == [2, 2]
     assert [found.swept for found in told] == [{"scene.interference": 0}, {"scene.interference": 7}]
 

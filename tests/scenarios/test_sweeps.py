@@ -181,21 +181,21 @@ def test_the_parts_of_a_key(key, parts):
 
 def test_without_a_sweep_each_initiator_on_each_scenario_is_a_point():
     found = swept({}, ["one", "two"], ["modified", "standard"])
-    assert [(point.scenario.name, point.entry.name, point.swept) for point in found] == [
+    assert [(point.world.name, point.entry.name, point.swept) for point in found] == [
         ("one", "modified", {}),
         ("one", "standard", {}),
         ("two", "modified", {}),
         ("two", "standard", {}),
     ]
-    assert found[0].scenario == ONE
+    assert found[0].world == ONE
     assert found[1].entry == STANDARD
 
 
 def test_values_are_put_in_and_all_else_stays():
     five, six = swept({"clutter[0].rate": [5.5, 6]})
-    assert (five.scenario.clutter[0].rate, six.scenario.clutter[0].rate) == (5.5, 6.0)
+    assert (five.world.clutter[0].rate, six.world.clutter[0].rate) == (5.5, 6.0)
     assert five.swept == {"clutter[0].rate": 5.5}
-    assert six.scenario.model_copy(update={"clutter": ONE.clutter}) == ONE
+    assert six.world.model_copy(update={"clutter": ONE.clutter}) == ONE
     assert ONE.clutter[0].rate == 5.0
 
 
@@ -206,8 +206,8 @@ def test_several_fields_make_a_grid_whose_last_key_runs_fastest():
     ]
     for point in found:
         assert list(point.swept) == ["scans", "fraction", "x.1"]
-        assert point.scenario.scans == point.swept["scans"]
-        assert point.scenario.region.x == (0.0, point.swept["x.1"])
+        assert point.world.scans == point.swept["scans"]
+        assert point.world.region.x == (0.0, point.swept["x.1"])
         assert point.parameters.votes == math.ceil(point.swept["scans"] * 0.9 * point.swept["fraction"])
         # The entry stays the one that the set lists.
         assert point.entry.name == "standard"
@@ -221,14 +221,14 @@ def test_auto_is_worked_out_for_each_point():
 
 def test_whole_numbers_stay_whole_and_others_are_not_rounded():
     (point,) = swept({"scans": [7], "interval": [7]})
-    assert type(point.scenario.scans) is int
-    assert type(point.scenario.interval) is float
+    assert type(point.world.scans) is int
+    assert type(point.world.interval) is float
     assert refusal({"scans": [7.5]}).path == ("sweep", "scans", 0)
 
 
 def test_a_key_is_looked_up_in_each_scenario():
     found = swept({"targets.0.birth": [0, 1]}, ["one", "two"])
-    assert [point.scenario.targets[0].birth for point in found] == [0, 1, 0, 1]
+    assert [point.world.targets[0].birth for point in found] == [0, 1, 0, 1]
     # Clear in the first scenario, and not in the second.
     problem = refusal({"rate": [1]}, scenarios=["one", "two"])
     assert problem.path == ("sweep", "rate")
@@ -274,7 +274,7 @@ def test_fields_that_depend_on_one_another_are_put_in_together():
     experiment = given.experiments[0].model_copy(
         update={"sweep": {"region.x.0": [200], "region.x.1": [300]}, "scenarios": [scenario]}
     )
-    assert {point.scenario.region.x for point in points(given, experiment)} == {(200.0, 300.0)}
+    assert {point.world.region.x for point in points(given, experiment)} == {(200.0, 300.0)}
 
 
 def test_one_field_by_two_keys_is_refused():

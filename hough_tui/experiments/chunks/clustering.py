@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,71 +13,37 @@ from numpy.typing import NDArray
 from algorithms.clustering.clusters import Clusters
 from algorithms.clustering.comparisons import TooFewPoints
 from algorithms.clustering.modes import cluster
-from algorithms.clustering.scoring import ClusterScores, score_clusters
+from algorithms.clustering.points import Points
+from algorithms.clustering.scoring import score_clusters
 from algorithms.errors import RequestError
 from algorithms.intervals import mean_interval, normal_interval
-from hough_tui.experiments.cases import Cell, CellChunk, Columns, Row, SharedDraws, SharedRun
+from hough_tui.experiments.cases import Cell, CellPart, Row, SharedDraws, SharedRun
+from hough_tui.experiments.columns.clustering import ClusterColumns
+from scenarios.entries import ClusteringEntry
+from scenarios.experiments import ClusteringExperiment
 from scenarios.range_doppler import draw_scene
 from scenarios.scenes import Scene
 
 
 @dataclass(frozen=True, slots=True)
-class ClusterColumns(Columns):
-    """The columns of one cell, one row a trial.
-
-    Attributes
-    ----------
-    trial : int32 (trials,), which trials of the experiment they are, rising
-    excess : int32 (trials,), number of clusters less number of targets
-    squared_error : float64 (trials, targets), squared distance of each target's centre from the
-        nearest plot, in cells; NaN in a trial without plots
-    """
-
-    trial: NDArray[np.int32]
-    excess: NDArray[np.int32]
-    squared_error: NDArray[np.float64]
-
-    @classmethod
-    def empty(cls, trials: int, targets: int) -> ClusterColumns:
-        """Return columns to be filled chunk by chunk."""
-        return cls(
-            np.arange(trials, dtype=np.int32),
-            np.zeros(trials, np.int32),
-            np.full((trials, targets), np.nan),
-        )
-
-    @property
-    def clusters(self) -> NDArray[np.int32]:
-        """Number of clusters of each trial."""
-        return self.excess + np.int32(self.squared_error.shape[1])
-
-    @property
-    def trial_square(self) -> NDArray[np.float64]:
-        """Mean squared error over the targets of each trial; NaN without plots, or without targets."""
-        if self.squared_error.shape[1] == 0:
-            return np.full(len(self.trial), np.nan)
-        mean: NDArray[np.float64] = self.squared_error.mean(axis=1)
-        return mean
-
-
-@dataclass(frozen=True, slots=True)
-class ClusteringCell(Cell):
+class ClusteringCell(Cell[Scene, ClusteringEntry]):
     """A clustering on a scene."""
+
+    experiment: ClusteringExperiment
 
     @property
     def scene(self) -> Scene:
         """The scene."""
-        found: Scene = self.world
-        return found
+        return self.world
 
     @property
     def bytes_a_trial(self) -> int:
         """Size of a trial's columns."""
-        return 8 + 8 * len(self.scene.targets)
+        return ClusterColumns.bytes_a_trial(targets=len(self.scene.targets))
 
     def empty_columns(self) -> ClusterColumns:
-        """Return columns to be filled chunk by chunk."""
-        return ClusterColumns.empty(self.experiment.trials, len(self.scene.targets))
+        """Return columns to be filled part by part."""
+        return ClusterColumns.empty(self.experiment.trials, targets=len(self.scene.targets))
 
     def tally(self, columns: ClusterColumns, seconds: float) -> Row:
         """Return the row of counts and errors, with intervals.
@@ -106,11 +72,9 @@ class ClusteringCell(Cell):
             "seconds_per_trial": seconds / len(exact),
         }
 
-    @classmethod
-    def shared(cls, cells: Sequence[Any], runs: tuple[SharedRun, ...]) -> SceneDraws:
-        """Return the work of cells that share their draws."""
-        first: ClusteringCell = cells[runs[0].cells[0]]
-        return SceneDraws(cells, first.experiment.seed, first.experiment.trials, runs, first.scene)
+    def shared(self, runs: tuple[SharedRun[ClusteringCell], ...]) -> SceneDraws:
+        """Return the work of cells that share this one's draws."""
+        return SceneDraws(runs)
 
 
 def _root_interval(square: NDArray[np.float64]) -> list[float] | None:
@@ -122,23 +86,13 @@ def _root_interval(square: NDArray[np.float64]) -> list[float] | None:
 
 
 @dataclass(frozen=True, slots=True)
-class SceneCellChunk(CellChunk):
-    """The clusters of a chunk, scored."""
+class SceneDraws(SharedDraws[ClusteringCell, Scene]):
+    """The work of cells that see the same draws of a scene."""
 
-    scores: ClusterScores
-
-    def fill(self, columns: ClusterColumns, first: int) -> None:
-        """Put the trials into the columns of the cell."""
-        rows = slice(first, first + len(self.scores.excess))
-        columns.excess[rows] = self.scores.excess
-        columns.squared_error[rows] = self.scores.squared_error
-
-
-@dataclass(frozen=True, slots=True)
-class SceneDraws(SharedDraws):
-    """The cells that see the same draws of a scene."""
-
-    scene: Scene
+    @property
+    def scene(self) -> Scene:
+        """The scene."""
+        return self.first.scene
 
     @property
     def expected_detections(self) -> float:
@@ -150,8 +104,8 @@ class SceneDraws(SharedDraws):
         return self.scene
 
     def run(
-        self, prepared: Scene, first: int, trials: int, plain: Callable[..., Any]
-    ) -> Iterator[SceneCellChunk]:
+        self, prepared: Scene, first: int, trials: int, run_in_process: Callable[..., Any]
+    ) -> Iterator[CellPart]:
         """Yield the scored clusters of consecutive trials, cell by cell."""
         began = time.thread_time()
         drawn = draw_scene(prepared, self.seed, first, trials)
@@ -160,14 +114,17 @@ class SceneDraws(SharedDraws):
             began = time.thread_time()
             scores = score_clusters(self._clusters(run, drawn.points, first), drawn.centres)
             seconds = drawing + time.thread_time() - began
-            for cell in run.cells:
-                yield SceneCellChunk(cell, seconds, scores)
+            for index in run.cells:
+                columns = ClusterColumns.of(
+                    first, trials, excess=scores.excess, squared_error=scores.squared_error
+                )
+                yield CellPart(index, columns, seconds)
 
-    def _clusters(self, run: SharedRun, points: Any, first: int) -> Clusters:
+    def _clusters(self, run: SharedRun[ClusteringCell], points: Points, first: int) -> Clusters:
         try:
-            return cluster(points, run.parameters)
+            return cluster(points, run.first.parameters)
         except TooFewPoints as error:
             raise RequestError(
-                f"{run.entry.name} on {self.scene.name}, trial {first + error.scan}: k-means is to find "
-                f"{error.number} targets among {error.different} different points; give a smaller number"
+                f"{run.first.entry.name} on {self.scene.name}, trial {first + error.scan}: k-means is to "
+                f"find {error.number} targets among {error.different} different points; give a smaller number"
             ) from None

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,57 +14,67 @@ from algorithms.initiators.base import ChunkInitiator
 from algorithms.plots import PlotChunk
 from algorithms.scoring import Scores, score
 from algorithms.tracks import TrackChunk
-from hough_tui.experiments.cases import Cell, CellChunk, Row, SharedDraws, SharedRun
+from hough_tui.experiments.cases import Cell, CellPart, Row, SharedDraws, SharedRun
 from hough_tui.experiments.chunks.plot_sources import PlotSource, plot_source, stage_key
-from hough_tui.experiments.columns import TrialColumns
+from hough_tui.experiments.columns.initiation import CONTROL, TARGETS, TrialColumns
 from hough_tui.experiments.engines.process_worker import initiate_trials
 from hough_tui.experiments.tallies import tally
-from scenarios.entries import ClusteringEntry, WithoutClustering
+from scenarios.entries import InitiatorEntry
 from scenarios.experiments import InitiationExperiment, MatchCriterion
 from scenarios.model import Scenario
 from scenarios.selection import ignores_z
 from scenarios.simulate import Draw, truth
+from scenarios.sweeps import Stage
 
 POINT = 10.0
 """Plots that a point counts for in the size of a chunk: initiators combine the plots of a target."""
 
 
 @dataclass(frozen=True, slots=True)
-class InitiationCell(Cell):
+class InitiationCell(Cell[Scenario, InitiatorEntry]):
     """An initiator on a scenario."""
+
+    experiment: InitiationExperiment
 
     @property
     def scenario(self) -> Scenario:
         """The scenario."""
-        return self.point.scenario
+        return self.world
 
     @property
-    def clustering(self) -> ClusteringEntry | WithoutClustering | None:
+    def clustering(self) -> Stage:
         """How points become plots; None of a scenario whose draws are plots."""
-        return self.point.elements.get("clustering")
+        return self.point.stage
 
     @property
     def criterion(self) -> MatchCriterion:
         """When a track matches a target."""
-        return cast("InitiationExperiment", self.experiment).criterion
+        return self.experiment.criterion
 
     @property
     def has_control(self) -> bool:
         """Whether the draws without targets are scored, too."""
-        return cast("InitiationExperiment", self.experiment).control
+        return self.experiment.control
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Sizes of the second axes of the columns."""
+        targets = len(self.scenario.targets)
+        return {TARGETS: targets, CONTROL: targets if self.has_control else 0}
 
     @property
     def run_key(self) -> str:
-        """What decides what is found in a draw."""
+        """What decides the tracks of a draw."""
         return f"{stage_key(self.clustering)} {self.entry.initiator} {self.parameters.model_dump_json()}"
 
     def heading(self, trials: int) -> Row:
-        """Return what a row says before what was found."""
+        """Return what a row says before its figures."""
         # A zero-argument super() does not find the class that slots make anew.
         return {
             **Cell.heading(self, trials),
             "unit": self.scenario.unit.value,
             "ignores_z": ignores_z(self.entry, self.scenario),
+            "target_names": [target.name for target in self.scenario.targets],
         }
 
     def blank(self) -> Row:
@@ -74,49 +84,34 @@ class InitiationCell(Cell):
     @property
     def bytes_a_trial(self) -> int:
         """Size of a trial's columns."""
-        return 20 + 10 * len(self.scenario.targets)
+        return TrialColumns.bytes_a_trial(**self.sizes)
 
     def empty_columns(self) -> TrialColumns:
         """Return columns to be filled chunk by chunk."""
-        return TrialColumns.empty(
-            self.experiment.trials, len(self.scenario.targets), control=self.has_control
-        )
+        return TrialColumns.empty(self.experiment.trials, **self.sizes)
 
     def tally(self, columns: TrialColumns, seconds: float) -> Row:
         """Return the row of rates with intervals; the seconds leave out the control."""
-        return tally(self, columns, seconds)
+        return {
+            **self.heading(len(columns)),
+            **tally(columns, seconds),
+            "criterion": self.criterion.document,
+            "parameters": self.parameters.model_dump(mode="json"),
+        }
 
-    @classmethod
-    def shared(cls, cells: Sequence[Any], runs: tuple[SharedRun, ...]) -> ScenarioDraws:
-        """Return the work of cells that share their draws."""
-        first: InitiationCell = cells[runs[0].cells[0]]
-        return ScenarioDraws(cells, first.experiment.seed, first.experiment.trials, runs, first.scenario)
-
-
-@dataclass(frozen=True, slots=True)
-class TrackCellChunk(CellChunk):
-    """The tracks of a chunk, scored.
-
-    Attributes
-    ----------
-    tracks, scores : of the trials
-    control_found : bool (trials, targets), or None without a control
-    """
-
-    tracks: TrackChunk
-    scores: Scores
-    control_found: NDArray[np.bool_] | None
-
-    def fill(self, columns: TrialColumns, first: int) -> None:
-        """Put the trials into the columns of the cell."""
-        columns.fill(first, self.tracks, self.scores, self.control_found)
+    def shared(self, runs: tuple[SharedRun[InitiationCell], ...]) -> ScenarioDraws:
+        """Return the work of cells that share this one's draws."""
+        return ScenarioDraws(runs)
 
 
 @dataclass(frozen=True, slots=True)
-class ScenarioDraws(SharedDraws):
-    """The cells that see the same draws of a scenario."""
+class ScenarioDraws(SharedDraws[InitiationCell, PlotSource]):
+    """The work of cells that see the same draws of a scenario."""
 
-    scenario: Scenario
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario."""
+        return self.first.scenario
 
     @property
     def expected_detections(self) -> float:
@@ -126,49 +121,71 @@ class ScenarioDraws(SharedDraws):
     @property
     def needs_processes(self) -> bool:
         """Whether an initiator is in plain Python, which would hold the interpreter's lock."""
-        return not all(isinstance(run.entry.algorithm, ChunkInitiator) for run in self.runs)
+        return not all(isinstance(run.first.entry.algorithm, ChunkInitiator) for run in self.runs)
 
     def prepared(self) -> PlotSource:
         """Return what draws the scenario's plots."""
         return plot_source(self.scenario)
 
     def run(
-        self, prepared: PlotSource, first: int, trials: int, plain: Callable[..., Any]
-    ) -> Iterator[TrackCellChunk]:
+        self, prepared: PlotSource, first: int, trials: int, run_in_process: Callable[..., Any]
+    ) -> Iterator[CellPart]:
         """Yield the scored tracks of consecutive trials, cell by cell."""
         chunk = prepared.chunk(self.seed, first, trials)
         for run in self.runs:
-            stage = self.cells[run.cells[0]].clustering
+            stage = run.first.clustering
             drawn, drawing = chunk.plots(stage)
-            tracks, finding = self._tracks(run, drawn.chunk, plain)
-            controlled = [cell for cell in run.cells if self.cells[cell].has_control]
-            if controlled:
+            tracks, finding = self._tracks(run, drawn.chunk, run_in_process)
+            has_control = any(cell.has_control for cell in run.cells.values())
+            if has_control:
                 control = chunk.control(stage)
-                control_tracks, _ = self._tracks(run, control.chunk, plain)
-            for cell in run.cells:
+                control_tracks, _ = self._tracks(run, control.chunk, run_in_process)
+            for index, cell in run.cells.items():
                 began = time.thread_time()
-                scores = self._scores(cell, tracks, drawn)
-                scoring = time.thread_time() - began
-                found = None
-                if cell in controlled:
-                    found = self._scores(cell, control_tracks, control).found
-                yield TrackCellChunk(cell, drawing + finding + scoring, tracks, scores, found)
-
-    def _scores(self, cell: int, tracks: TrackChunk, drawn: Draw) -> Scores:
-        known = truth(self.scenario, drawn)
-        return score(tracks, known, drawn.chunk.offsets, self.cells[cell].criterion.value)
+                scores = scores_of(cell, tracks, drawn)
+                seconds = drawing + finding + time.thread_time() - began
+                control_found = np.zeros((trials, 0), np.bool_)
+                if has_control and cell.has_control:
+                    control_found = scores_of(cell, control_tracks, control).found
+                yield CellPart(index, columns_of(first, tracks, scores, control_found), seconds)
 
     def _tracks(
-        self, run: SharedRun, chunk: PlotChunk, plain: Callable[..., Any]
+        self, run: SharedRun[InitiationCell], chunk: PlotChunk, run_in_process: Callable[..., Any]
     ) -> tuple[TrackChunk, float]:
         """Return the tracks, with their plots where a criterion asks for them, and the seconds."""
-        algorithm, context = run.entry.algorithm, self.scenario.context
+        algorithm, parameters = run.first.entry.algorithm, run.first.parameters
+        context = self.scenario.context
         if not isinstance(algorithm, ChunkInitiator):
-            told: tuple[TrackChunk, float] = plain(
-                f"initiator {algorithm.name}", initiate_trials, algorithm.name, run.parameters, context, chunk
+            timed: tuple[TrackChunk, float] = run_in_process(
+                f"initiator {algorithm.name}", initiate_trials, algorithm.name, parameters, context, chunk
             )
-            return told
+            return timed
         began = time.thread_time()
-        plots = any(self.cells[cell].criterion.plots is not None for cell in run.cells)
-        tracks = algorithm.tracks_of_chunk(chunk, context, run.parameters, plots=plots, states=False)
+        plots = any(cell.criterion.plots is not None for cell in run.cells.values())
+        tracks = algorithm.tracks_of_chunk(chunk, context, parameters, plots=plots, states=False)
         return tracks, time.thread_time() - began
+
+
+def scores_of(cell: InitiationCell, tracks: TrackChunk, drawn: Draw) -> Scores:
+    """Return how the tracks of draws score by the criterion of a cell."""
+    return score(tracks, truth(cell.scenario, drawn), drawn.chunk.offsets, cell.criterion.value)
+
+
+def columns_of(
+    first: int, tracks: TrackChunk, scores: Scores, control_found: NDArray[np.bool_]
+) -> TrialColumns:
+    """Return the columns of consecutive trials, from their scored tracks."""
+    return TrialColumns.of(
+        first,
+        len(tracks.counts),
+        found=scores.found,
+        tracks=tracks.counts,
+        false=scores.false,
+        duplicates=scores.duplicates,
+        theta_error=scores.theta_error,
+        rho_error=scores.rho_error,
+        votes_outside=tracks.votes_outside,
+        control_found=control_found,
+        mixed=scores.mixed,
+        effort=tracks.effort,
+    )

@@ -12,11 +12,8 @@ from scenarios.entries import ClusteringEntry, WithoutClustering
 from scenarios.front_end import clustered, every_point
 from scenarios.model import Scenario
 from scenarios.simulate import Draw, draw
+from scenarios.sweeps import Stage
 from scenarios.world import World
-
-Stage = ClusteringEntry | WithoutClustering | None
-"""How points become plots; None where plots are drawn."""
-
 
 Made = TypeVar("Made")
 

@@ -22,7 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.errors import WorkFailedError
-from hough_tui.experiments.cases import Cell, Columns, Row
+from hough_tui.experiments.cases import AnyCell, Row
+from hough_tui.experiments.columns.schema import Columns
 from hough_tui.experiments.engines.process_worker import begin_worker
 from hough_tui.experiments.plan import Plan
 
@@ -113,7 +114,7 @@ class Job:
         """Whether every trial of every cell is done."""
         return bool((self.progress.done == self.progress.total).all())
 
-    def finished(self) -> Iterator[tuple[Cell, Columns, float]]:
+    def finished(self) -> Iterator[tuple[AnyCell, Columns, float]]:
         """Yield the cells that have finished trials, with the columns of these and their seconds."""
         for cell, columns, finished, seconds in zip(
             self.plan.cells, self.columns, self._finished, self._seconds, strict=True
@@ -123,7 +124,7 @@ class Job:
             if done.all():
                 yield cell, columns, float(seconds)
             elif done.any():
-                yield cell, columns.part(done), float(seconds)
+                yield cell, columns.select(done), float(seconds)
 
     def rows(self) -> list[Row]:
         """Return the rows of the cells that have finished trials, over these trials."""
@@ -147,7 +148,7 @@ class Job:
         """Load, or compile, the kernels that the plan needs, so that no trial is charged for it."""
         while self._cold and not self._cancelled.is_set():
             shared = self._cold.pop()
-            for _ in shared.run(shared.prepared(), 0, 1, self._plain):
+            for _ in shared.run(shared.prepared(), 0, 1, self._run_in_process):
                 continue
 
     def _run(self, index: int, first: int, trials: int) -> None:
@@ -169,20 +170,20 @@ class Job:
             prepared = self._prepared.get(index)
             if prepared is None:
                 prepared = self._prepared[index] = shared.prepared()
-        for done in shared.run(prepared, first, trials, self._plain):
-            done.fill(self.columns[done.cell], first)
+        for part in shared.run(prepared, first, trials, self._run_in_process):
+            self.columns[part.cell].put(part.columns)
             with self._lock:
-                self._seconds[done.cell] += done.seconds
-                self._finished[done.cell][first : first + trials] = True
-                self.progress.done[done.cell] += trials
+                self._seconds[part.cell] += part.seconds
+                self._finished[part.cell][first : first + trials] = True
+                self.progress.done[part.cell] += trials
             if self._cancelled.is_set():
                 return
 
-    def _plain(self, what: str, function: Callable[..., Any], *given: Any) -> Any:
+    def _run_in_process(self, what: str, function: Callable[..., Any], *arguments: Any) -> Any:
         """Return what a function in plain Python gives in a worker process."""
         assert self._processes is not None
         try:
-            return self._processes.submit(function, *given).result()
+            return self._processes.submit(function, *arguments).result()
         except BrokenExecutor:
             raise WorkFailedError(f"{what}: its worker process died; mend the plug-in") from None
 

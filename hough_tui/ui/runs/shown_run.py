@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.errors import RequestError
-from hough_tui.experiments.cases import Cell, Columns, Row
-from hough_tui.experiments.columns import TrialColumns
+from hough_tui.experiments.cases import AnyCell, Row
+from hough_tui.experiments.columns.schema import Columns
 from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import identity, result
 from hough_tui.experiments.stores.folder import Run
 
+CellT = TypeVar("CellT", bound=AnyCell, covariant=True)
+ColumnsT = TypeVar("ColumnsT", bound=Columns, covariant=True)
+
 
 @dataclass(frozen=True, slots=True)
-class RowTrials:
+class RowTrials(Generic[CellT, ColumnsT]):
     """The trials behind one row.
 
     Attributes
@@ -29,26 +31,17 @@ class RowTrials:
     columns : which trials of the experiment they are, and what each of them gave
     """
 
-    cell: Cell
-    columns: Columns
+    cell: CellT
+    columns: ColumnsT
 
     @property
     def numbers(self) -> NDArray[np.int32]:
         """Which trials of the experiment they are, int32 (trials,)."""
         return self.columns.trial
 
-    @property
-    def of_tracks(self) -> TrialColumns:
-        """What each trial gave, of a row of initiation.
 
-        Raises
-        ------
-        RequestError
-            Where the row is of clustering.
-        """
-        if not isinstance(self.columns, TrialColumns):
-            raise RequestError("this row is of clustering: its trials have clusters, and no tracks")
-        return self.columns
+AnyTrials = RowTrials[AnyCell, Columns]
+"""The trials behind a row of any kind of experiment."""
 
 
 class ShownRun(ABC):
@@ -64,7 +57,7 @@ class ShownRun(ABC):
     rows: tuple[Row, ...]
 
     @abstractmethod
-    def trials(self, index: int) -> RowTrials:
+    def trials(self, index: int) -> AnyTrials:
         """Return the trials behind a row; it may take long.
 
         Raises
@@ -106,12 +99,12 @@ class LiveRun(ShownRun):
             for index, row in enumerate(self.rows)
         )
 
-    def trials(self, index: int) -> RowTrials:
+    def trials(self, index: int) -> AnyTrials:
         cell = self.job.plan.cells[index]
         finished, columns = self._finished(index), self.job.columns[index]
         if not finished.any():
             raise RequestError("no trial of this row is finished yet")
-        return RowTrials(cell, columns if finished.all() else columns.part(finished))
+        return RowTrials(cell, columns if finished.all() else columns.select(finished))
 
     def document(self) -> dict[str, Any]:
         return self.found().document
@@ -136,7 +129,7 @@ class LiveRun(ShownRun):
         if not finished.any():
             return row
         if not finished.all():
-            columns = columns.part(finished)
+            columns = columns.select(finished)
         return cell.tally(columns, float(self.job._seconds[index]))
 
     def _finished(self, index: int) -> NDArray[np.bool_]:
@@ -153,53 +146,34 @@ class KeptRun(ShownRun):
         self.rows = tuple(run.document["rows"])
         self._cells = _cells(run)
 
-    def trials(self, index: int) -> RowTrials:
+    def trials(self, index: int) -> AnyTrials:
         cell, row = self._cells[index], self.rows[index]
         if cell is None:
             raise RequestError(
                 "this row's scenario and initiator cannot be told from the sets that were kept with the "
                 "run, so its trials cannot be drawn again"
             )
-        arrays = dict(self.run.columns[index])
-        if "trial" not in arrays:  # as in runs of the first versions
-            if row["trials"] < cell.experiment.trials:
-                raise RequestError(
-                    f"the run was cancelled after {row['trials']:,} of this row's "
-                    f"{cell.experiment.trials:,} trials, and the version that kept it did not keep "
-                    "which ones they were; run it again to open its trials"
-                )
-            arrays["trial"] = np.arange(row["trials"], dtype=np.int32)
-        # Runs of earlier versions do not know it.
-        arrays.setdefault("mixed", np.full(row["trials"], -1, np.int32))
-        return RowTrials(cell, kept_columns(cell, arrays))
+        arrays = self.run.columns[index]
+        # Runs of the first versions do not say which trials they are of.
+        if "trial" not in arrays and row["trials"] < cell.experiment.trials:
+            raise RequestError(
+                f"the run was cancelled after {row['trials']:,} of this row's "
+                f"{cell.experiment.trials:,} trials, and the version that kept it did not keep "
+                "which ones they were; run it again to open its trials"
+            )
+        return RowTrials(cell, type(cell.empty_columns()).read(arrays, row["trials"]))
 
     def document(self) -> dict[str, Any]:
         return self.run.document
 
 
-def cell_words(cell: Cell) -> str:
+def cell_words(cell: AnyCell) -> str:
     """Return what ran in a cell: scenario, initiator, swept values."""
     swept = (f"{key} {value:g}" for key, value in cell.swept.items())
-    return " · ".join((*cell.elements.values(), *swept))
+    return " · ".join((*cell.names.values(), *swept))
 
 
-def kept_columns(cell: Cell, arrays: Mapping[str, NDArray[Any]]) -> Columns:
-    """Return the per-trial columns of a row as they were kept.
-
-    Raises
-    ------
-    RequestError
-        Where one is missing.
-    """
-    empty = cell.empty_columns()
-    missing = [name for name in empty.arrays() if name not in arrays]
-    if missing:
-        raise RequestError(f"the run was kept without the columns {', '.join(missing)}")
-    columns: Columns = empty.of(arrays)
-    return columns
-
-
-def _cells(run: Run) -> list[Cell | None]:
+def _cells(run: Run) -> list[AnyCell | None]:
     """Return the cell of each row, None where the sets do not hold it.
 
     The rows are those cells, in their order, that had finished trials.
@@ -209,7 +183,7 @@ def _cells(run: Run) -> list[Cell | None]:
         cells = iter(plan_run(run.sets).cells)
     except RequestError:
         return [None] * len(rows)
-    found: list[Cell | None] = []
+    found: list[AnyCell | None] = []
     for row in rows:
         wanted = identity(row)
         found.append(next((cell for cell in cells if identity(cell.blank()) == wanted), None))

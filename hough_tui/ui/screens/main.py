@@ -252,7 +252,7 @@ class MainScreen(AttentiveScreen):
 
     async def _open_trial(self, opened: TrialOpened) -> None:
         # What is drawn of a scene are points to be clustered; of a scenario, plots for initiators.
-        name = "clustering" if "scene" in opened.cell.elements else "look"
+        name = "clustering" if "scene" in opened.cell.names else "look"
         await self._go(name)
         if name in self._views:
             self._views[name].open_trial(opened)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
@@ -29,7 +29,7 @@ class TrialsScreen(ModalScreen[int | None]):
     """
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q", "leave", "Back", id="trials.leave")]
 
-    def __init__(self, table: TrialTable, order: Rows) -> None:
+    def __init__(self, table: TrialTable[Any, Any], order: Rows) -> None:
         super().__init__()
         self._table, self._order = table, order
 

@@ -15,13 +15,13 @@ from textual.worker import get_current_worker
 from algorithms.errors import RequestError
 from algorithms.parameters import Parameters
 from hough_tui.experiments.chunks.initiation import InitiationCell
-from hough_tui.experiments.chunks.plot_sources import Stage
 from hough_tui.inspection.trial import Picture, TrialLook, look, picture
 from hough_tui.ui.views.look_panel import LookPanel
 from scenarios.entries import ClusteringEntry, InitiatorEntry
 from scenarios.experiments import InitiationExperiment, MatchCriterion
 from scenarios.model import Scenario, ScenarioSet
 from scenarios.selection import known_stages, seed_of
+from scenarios.sweeps import Stage
 
 if TYPE_CHECKING:
     from hough_tui.ui.messages import TrialOpened

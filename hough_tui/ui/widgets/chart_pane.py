@@ -10,7 +10,9 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.widgets import Select
 
+from algorithms.errors import RequestError
 from hough_tui.experiments.cases import Row
+from hough_tui.experiments.columns.initiation import TrialColumns
 from hough_tui.experiments.tallies import false_ratio
 from hough_tui.reports.charts import rate_chart
 from hough_tui.reports.metrics import KNOWN
@@ -134,5 +136,7 @@ def _rates_drawn(rows: Sequence[Row], metric: str, width: int, height: int) -> s
 
 def _trials_drawn(run: ShownRun, index: int, width: int, height: int) -> str:
     trials = run.trials(index)
-    ratio = false_ratio(trials.of_tracks)
+    if not isinstance(trials.columns, TrialColumns):
+        raise RequestError("this row is of clustering: its trials have clusters, and no tracks")
+    ratio = false_ratio(trials.columns)
     return trial_chart(cell_words(trials.cell), trials.numbers, ratio, width, height)

@@ -3,44 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hough_tui.experiments.chunks.clustering import ClusterColumns
+from hough_tui.experiments.chunks.clustering import ClusteringCell
+from hough_tui.experiments.columns.clustering import ClusterColumns
 from hough_tui.reports.numerals import fixed, number
 from hough_tui.ui.runs.shown_run import RowTrials
 from hough_tui.ui.widgets.trial_table import PLAIN, QUIET, WRONG, Rows, TrialColumn, TrialTable, by_number
 
-
-def _columns(trials: RowTrials) -> ClusterColumns:
-    return cast("ClusterColumns", trials.columns)
+ClustersOfTrials = RowTrials[ClusteringCell, ClusterColumns]
 
 
-def _greatest(trials: RowTrials) -> NDArray[np.float64]:
+def _greatest(trials: ClustersOfTrials) -> NDArray[np.float64]:
     """Return the greatest squared error of each trial, infinite where there is no plot."""
-    squared = _columns(trials).squared_error
+    squared = trials.columns.squared_error
     if squared.shape[1] == 0:
         return np.zeros(len(squared))
     greatest: NDArray[np.float64] = np.where(np.isnan(squared), np.inf, squared).max(axis=1)
     return greatest
 
 
-def _failed_first(trials: RowTrials) -> Rows:
+def _failed_first(trials: ClustersOfTrials) -> Rows:
     # The last key counts most.
-    return np.lexsort((trials.numbers, -_greatest(trials), -np.abs(_columns(trials).excess)))
+    return np.lexsort((trials.numbers, -_greatest(trials), -np.abs(trials.columns.excess)))
 
 
-def _by_excess(trials: RowTrials) -> Rows:
-    return np.argsort(-_columns(trials).excess, kind="stable")
+def _by_excess(trials: ClustersOfTrials) -> Rows:
+    return np.argsort(-trials.columns.excess, kind="stable")
 
 
-def _by_error(trials: RowTrials) -> Rows:
+def _by_error(trials: ClustersOfTrials) -> Rows:
     return np.argsort(-_greatest(trials), kind="stable")
 
 
-class ClusterTrials(TrialTable):
+class ClusterTrials(TrialTable[ClusteringCell, ClusterColumns]):
     """The trials behind a row of clustering."""
 
     ORDERS = {
@@ -53,7 +51,7 @@ class ClusterTrials(TrialTable):
     @property
     def words(self) -> str:
         """How many trials there are, and how many count wrong."""
-        excess = _columns(self.trials).excess
+        excess = self.trials.columns.excess
         few, many = int((excess < 0).sum()), int((excess > 0).sum())
         return (
             f"{len(self):,} trials · {few:,} with too few clusters, {many:,} with too many · errors in cells"
@@ -61,7 +59,7 @@ class ClusterTrials(TrialTable):
 
     def told(self) -> list[TrialColumn]:
         """Return the number of clusters, and the distance of each target from the nearest plot."""
-        columns = _columns(self.trials)
+        columns = self.trials.columns
         found = [
             TrialColumn("clusters", 8, self._count, "failed first"),
             TrialColumn("excess", 6, self._excess, "excess"),
@@ -73,16 +71,16 @@ class ClusterTrials(TrialTable):
         return found
 
     def _count(self, row: int) -> tuple[str, str]:
-        columns = _columns(self.trials)
+        columns = self.trials.columns
         kind = WRONG if columns.excess[row] else PLAIN
         return f"{columns.clusters[row]}/{columns.squared_error.shape[1]}", kind
 
     def _excess(self, row: int) -> tuple[str, str]:
-        excess = int(_columns(self.trials).excess[row])
+        excess = int(self.trials.columns.excess[row])
         return f"{excess:+d}" if excess else "0", PLAIN if excess else QUIET
 
     def _error(self, target: int) -> Callable[[int], tuple[str, str]]:
-        squared = _columns(self.trials).squared_error
+        squared = self.trials.columns.squared_error
 
         def cell(row: int) -> tuple[str, str]:
             value = float(squared[row, target])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from rich.text import Text
 from textual import events, on, work
@@ -18,7 +18,7 @@ from textual.widgets import DataTable, Static
 
 from algorithms.errors import RequestError
 from hough_tui.directories import data_directory
-from hough_tui.experiments.cases import Cell, Row
+from hough_tui.experiments.cases import AnyCell, Row
 from hough_tui.experiments.chunks.clustering import ClusteringCell
 from hough_tui.experiments.chunks.initiation import InitiationCell
 from hough_tui.reports.documents import markdown_text
@@ -45,7 +45,10 @@ STACKED, NOTED, MOST_NOTES = 0.6, 1 / 3, 8
 a long table leaves to its notes; and the most lines of notes."""
 
 
-TABLES: dict[type[Cell], type[TrialTable]] = {InitiationCell: TrackTrials, ClusteringCell: ClusterTrials}
+TABLES: dict[type[AnyCell], type[TrialTable[Any, Any]]] = {
+    InitiationCell: TrackTrials,
+    ClusteringCell: ClusterTrials,
+}
 """The tables of the trials of each kind of row."""
 
 
@@ -81,7 +84,7 @@ class RatePanel(Widget):
     class TrialsRead(Message):
         """The trials behind a row are at hand."""
 
-        def __init__(self, table: TrialTable, order: Rows) -> None:
+        def __init__(self, table: TrialTable[Any, Any], order: Rows) -> None:
             super().__init__()
             self.table, self.order = table, order
 

@@ -8,32 +8,36 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from hough_tui.experiments.chunks.initiation import InitiationCell
+from hough_tui.experiments.columns.initiation import TrialColumns
 from hough_tui.reports.numerals import fixed, number
 from hough_tui.ui.runs.shown_run import RowTrials
 from hough_tui.ui.widgets.trial_table import PLAIN, QUIET, WRONG, Rows, TrialColumn, TrialTable, by_number
 
+TracksOfTrials = RowTrials[InitiationCell, TrialColumns]
 
-def _failed_first(trials: RowTrials) -> Rows:
-    columns = trials.of_tracks
+
+def _failed_first(trials: TracksOfTrials) -> Rows:
+    columns = trials.columns
     found = columns.found.sum(axis=1)
     # The last key counts most.
     return np.lexsort((trials.numbers, -columns.duplicates, -columns.false, found))
 
 
-def _by_false(trials: RowTrials) -> Rows:
-    return np.argsort(-trials.of_tracks.false, kind="stable")
+def _by_false(trials: TracksOfTrials) -> Rows:
+    return np.argsort(-trials.columns.false, kind="stable")
 
 
-def _by_duplicates(trials: RowTrials) -> Rows:
-    return np.argsort(-trials.of_tracks.duplicates, kind="stable")
+def _by_duplicates(trials: TracksOfTrials) -> Rows:
+    return np.argsort(-trials.columns.duplicates, kind="stable")
 
 
-def _by_rho_error(trials: RowTrials) -> Rows:
-    return _by_greatest(trials.of_tracks.rho_error)
+def _by_rho_error(trials: TracksOfTrials) -> Rows:
+    return _by_greatest(trials.columns.rho_error)
 
 
-def _by_theta_error(trials: RowTrials) -> Rows:
-    return _by_greatest(trials.of_tracks.theta_error)
+def _by_theta_error(trials: TracksOfTrials) -> Rows:
+    return _by_greatest(trials.columns.theta_error)
 
 
 def _by_greatest(errors: NDArray[np.float32]) -> Rows:
@@ -43,7 +47,7 @@ def _by_greatest(errors: NDArray[np.float32]) -> Rows:
     return np.argsort(-known.max(axis=1), kind="stable")
 
 
-class TrackTrials(TrialTable):
+class TrackTrials(TrialTable[InitiationCell, TrialColumns]):
     """The trials behind a row of initiation."""
 
     ORDERS = {
@@ -55,8 +59,8 @@ class TrackTrials(TrialTable):
         "error in θ": _by_theta_error,
     }
 
-    def __init__(self, trials: RowTrials) -> None:
-        columns = trials.of_tracks
+    def __init__(self, trials: TracksOfTrials) -> None:
+        columns = trials.columns
         self.targets = columns.found.shape[1]
         self._found = columns.found.sum(axis=1)
         self.missed = int((self._found < self.targets).sum())
@@ -72,7 +76,7 @@ class TrackTrials(TrialTable):
 
     def told(self) -> list[TrialColumn]:
         """Return what was found, and what else was initiated."""
-        columns, found = self.trials.of_tracks, list[TrialColumn]()
+        columns, found = self.trials.columns, list[TrialColumn]()
         if self.targets:
             found.append(TrialColumn("found", 5, self._found_cell, "failed first"))
         found += [
@@ -85,7 +89,7 @@ class TrackTrials(TrialTable):
             width = max(7, len(name))
             found.append(TrialColumn(f"{name}\nΔθ °", width, self._theta(index), "error in θ"))
             found.append(TrialColumn(f"{name}\nΔρ", width, self._rho(index), "error in ρ"))
-        if len(columns.control_found) and self.targets:
+        if columns.control_found.size:
             control = columns.control_found.sum(axis=1)
             found.append(TrialColumn("control", 7, lambda row: (f"{control[row]}/{self.targets}", QUIET)))
         if columns.votes_outside.any():
@@ -98,15 +102,15 @@ class TrackTrials(TrialTable):
         return f"{count}/{self.targets}", PLAIN if count == self.targets else WRONG
 
     def _theta(self, target: int) -> Callable[[int], tuple[str, str]]:
-        errors = self.trials.of_tracks.theta_error
+        errors = self.trials.columns.theta_error
         return lambda row: self._error(row, target, math.degrees(float(errors[row, target])), 2)
 
     def _rho(self, target: int) -> Callable[[int], tuple[str, str]]:
-        errors = self.trials.of_tracks.rho_error
+        errors = self.trials.columns.rho_error
         return lambda row: self._error(row, target, float(errors[row, target]), 3)
 
     def _error(self, row: int, target: int, value: float, decimals: int) -> tuple[str, str]:
-        if not self.trials.of_tracks.found[row, target]:
+        if not self.trials.columns.found[row, target]:
             return "missed", WRONG
         return fixed(number(value), decimals), PLAIN
 

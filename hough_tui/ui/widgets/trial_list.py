@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from rich.cells import cell_len
 from rich.segment import Segment
@@ -69,7 +69,7 @@ class TrialList(ScrollView, can_focus=True):
             super().__init__()
             self.by, self.order = by, order
 
-    def __init__(self, table: TrialTable, order: Rows) -> None:
+    def __init__(self, table: TrialTable[Any, Any], order: Rows) -> None:
         super().__init__()
         self._table = table
         self._order = order

@@ -5,12 +5,12 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar, Generic
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hough_tui.ui.runs.shown_run import RowTrials
+from hough_tui.ui.runs.shown_run import AnyTrials, CellT, ColumnsT, RowTrials
 
 Rows = NDArray[np.int64]
 
@@ -36,7 +36,7 @@ class TrialColumn:
     order: str | None = None
 
 
-class TrialTable(ABC):
+class TrialTable(ABC, Generic[CellT, ColumnsT]):
     """The trials behind a row; the subclasses say what each of them gave.
 
     Parameters
@@ -49,9 +49,9 @@ class TrialTable(ABC):
     columns : what is told of them
     """
 
-    ORDERS: ClassVar[Mapping[str, Callable[[RowTrials], Rows]]] = {}
+    ORDERS: ClassVar[Mapping[str, Callable[[Any], Rows]]] = {}
 
-    def __init__(self, trials: RowTrials) -> None:
+    def __init__(self, trials: RowTrials[CellT, ColumnsT]) -> None:
         self.trials = trials
         self.columns = (self._number_column(), *self.told())
 
@@ -82,6 +82,6 @@ class TrialTable(ABC):
         return TrialColumn("trial", max(6, widest), lambda row: (f"{numbers[row]:,}", PLAIN), "trial")
 
 
-def by_number(trials: RowTrials) -> Rows:
+def by_number(trials: AnyTrials) -> Rows:
     """Return the rows in the order of their trials."""
     return np.argsort(trials.numbers, kind="stable")

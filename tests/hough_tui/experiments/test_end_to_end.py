@@ -65,7 +65,7 @@ def test_the_number_of_workers_changes_no_byte(plan, job):
 
 def test_draws_are_shared_and_what_is_found_is_found_once(plan):
     (shared,) = plan.draws
-    assert [run.cells for run in shared.runs] == [(0,), (1,), (2,), (3,)]
+    assert [tuple(run.cells) for run in shared.runs] == [(0,), (1,), (2,), (3,)]
     given = load_set("range-doppler")
     twice = [found.model_copy(update={"name": f"{found.name}-2"}) for found in given.clusterings[:1]]
     doubled = given.model_copy(
@@ -77,7 +77,7 @@ def test_draws_are_shared_and_what_is_found_is_found_once(plan):
         }
     )
     (shared,) = plan_run([doubled]).draws
-    assert [run.cells for run in shared.runs] == [(0, 1)]
+    assert [tuple(run.cells) for run in shared.runs] == [(0, 1)]
 
 
 def test_a_trial_can_be_looked_at_as_its_row_saw_it(plan, job):

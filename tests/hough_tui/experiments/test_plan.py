@@ -28,7 +28,7 @@ def test_equal_draws_and_equal_tracks_are_work_once():
     )
     for shared in plan.draws:
         for run in shared.runs:
-            assert {plan.cells[cell].entry.name for cell in run.cells} == {run.entry.name}
+            assert {plan.cells[cell].entry.name for cell in run.cells} == {run.first.entry.name}
             assert {plan.cells[cell].scenario.scans for cell in run.cells} == {shared.scenario.scans}
 
 

@@ -2,9 +2,8 @@ import numpy as np
 import pytest
 
 from algorithms.intervals import wilson
-from hough_tui.experiments.columns import TrialColumns
+from hough_tui.experiments.columns.initiation import TrialColumns
 from hough_tui.experiments.plan import plan_run
-from hough_tui.experiments.tallies import tally
 from scenarios.files.set_files import load_set
 
 
@@ -14,7 +13,7 @@ def cell():
 
 
 def test_rates_by_hand(cell):
-    columns = TrialColumns.empty(4, 2, control=True)
+    columns = TrialColumns.empty(4, targets=2, control=2)
     columns.found[:] = [[1, 1], [1, 0], [0, 0], [1, 1]]
     columns.tracks[:] = [4, 2, 0, 5]
     columns.false[:] = [1, 1, 0, 0]
@@ -23,7 +22,7 @@ def test_rates_by_hand(cell):
     columns.rho_error[:] = [[0.3, -0.3], [0.6, np.nan], [np.nan, np.nan], [0, 0]]
     columns.votes_outside[:] = [0, 8, 0, 0]
     columns.control_found[0, 0] = True
-    row = tally(cell, columns, seconds=0.008)
+    row = cell.tally(columns, seconds=0.008)
     assert row["success_rate"] == pytest.approx(5 / 8)
     assert row["success_by_target"] == pytest.approx([0.75, 0.5])
     assert row["target_names"] == ["rising", "falling"]
@@ -42,24 +41,24 @@ def test_rates_by_hand(cell):
 
 
 def test_one_target_gives_the_interval_of_wilson(cell):
-    columns = TrialColumns.empty(50, 1, control=False)
+    columns = TrialColumns.empty(50, targets=1)
     columns.found[:31] = True
-    row = tally(cell, columns, seconds=1.0)
+    row = cell.tally(columns, seconds=1.0)
     assert row["success_ci95"] == pytest.approx(wilson(31 / 50, 50))
     assert row["success_control"] is None
 
 
 def test_targets_that_are_found_together_widen_the_interval(cell):
-    apart, together = (TrialColumns.empty(400, 2, control=False) for _ in range(2))
+    apart, together = (TrialColumns.empty(400, targets=2) for _ in range(2))
     apart.found[:200, 0] = True
     apart.found[100:300, 1] = True
     together.found[:200] = True
-    widths = [np.ptp(tally(cell, columns, 1.0)["success_ci95"]) for columns in (apart, together)]
+    widths = [np.ptp(cell.tally(columns, 1.0)["success_ci95"]) for columns in (apart, together)]
     assert widths[1] == pytest.approx(widths[0] * np.sqrt(2), rel=0.02)
 
 
 def test_without_targets_there_is_no_success_rate(cell):
-    row = tally(cell, TrialColumns.empty(3, 0, control=True), 1.0)
+    row = cell.tally(TrialColumns.empty(3), 1.0)
     assert row["success_rate"] is None
     assert row["success_ci95"] is None
     assert row["success_by_target"] == []

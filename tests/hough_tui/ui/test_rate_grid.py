@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from textual.app import App
 
-from hough_tui.experiments.columns import TrialColumns
+from hough_tui.experiments.columns.initiation import TrialColumns
 from hough_tui.experiments.plan import plan_run
 from hough_tui.ui.runs.shown_run import RowTrials
 from hough_tui.ui.widgets.rate_grid import RateGrid, rate_columns, sort_value
@@ -185,6 +185,7 @@ def many(cell, count):
         np.zeros(count, np.int64),
         random.random((count, 2)) < 0.1,
         np.full(count, -1, np.int32),
+        {},
     )
     return TrackTrials(RowTrials(cell, columns))
 

@@ -11,7 +11,7 @@ import pytest
 from algorithms.clustering.modes import cluster
 from algorithms.errors import RequestError
 from algorithms.intervals import wilson
-from hough_tui.experiments.chunks.clustering import ClusterColumns
+from hough_tui.experiments.columns.clustering import ClusterColumns
 from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import result
@@ -65,11 +65,14 @@ def test_cells_are_scene_by_scene_and_share_their_draws(plan):
         (0, "k-means", {"scene.interference": 0}),
         (40, "k-means", {"scene.interference": 40}),
     ]
-    assert [[run.cells for run in shared.runs] for shared in plan.draws] == [[(0,), (2,)], [(1,), (3,)]]
+    assert [[tuple(run.cells) for run in shared.runs] for shared in plan.draws] == [
+        [(0,), (2,)],
+        [(1,), (3,)],
+    ]
 
 
 def test_rows_by_hand():
-    cell, columns = cell_of(), ClusterColumns.empty(5, 2)
+    cell, columns = cell_of(), ClusterColumns.empty(5, targets=2)
     columns.excess[:] = [0, 0, 1, -1, -2]
     columns.squared_error[:] = [[1, 3], [0, 0], [4, 4], [9, 7], [np.nan, np.nan]]
     row = cell.tally(columns, seconds=0.01)
@@ -91,7 +94,7 @@ def test_rows_by_hand():
 
 
 def test_without_targets_there_is_no_error():
-    columns = ClusterColumns.empty(3, 0)
+    columns = ClusterColumns.empty(3)
     columns.excess[:] = [0, 2, 0]
     row = cell_of(0).tally(columns, seconds=1.0)
     assert (row["centroid_rmse"], row["centroid_rmse_ci95"]) == (None, None)

@@ -1,0 +1,1 @@
+"""Columns: what each trial of a cell gave, by a declared schema."""
