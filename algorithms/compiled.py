@@ -1,22 +1,19 @@
-"""Compiled kernels: how they are declared, and where their machine code is kept."""
+"""Compiled kernels: how they are declared and called."""
 
 from __future__ import annotations
 
-import hashlib
-import importlib.util
-import os
 from collections.abc import Callable
 from functools import cache, cached_property, update_wrapper
-from importlib.metadata import version
-from pathlib import Path
 from typing import Any
+
+from algorithms.kernel_cache.folder import kernel_folder
 
 
 class Kernel:
-    """A function that is machine code from its first call on.
+    """Function compiled by numba on its first call.
 
-    Until then numba is not even imported: whoever only reads sets and shows forms does not wait
-    for it. Kernels call each other as if they were what numba makes of them.
+    numba is imported only then, so commands that run no kernel start fast. Kernels call each
+    other as if they were numba's own dispatchers.
 
     Parameters
     ----------
@@ -33,20 +30,25 @@ class Kernel:
 
     @cached_property
     def compiled(self) -> Any:
-        """What numba makes of the function."""
+        """The dispatcher that numba makes of the function; with `NUMBA_DISABLE_JIT` the function itself."""
         import numba
 
-        _have_kernels_understood()
-        # numba compares a cached kernel with its own file only, not with the files of the kernels
-        # it calls, so an edited callee would be missed: the folder's name covers all of them.
-        numba.config.CACHE_DIR = str(cache_folder(self.function.__module__.partition(".")[0]))
-        return numba.njit(nogil=True, cache=True, error_model="numpy")(self.function)
+        from algorithms.kernel_cache.overloads import OverloadCache
+
+        _register_kernels()
+        dispatcher = numba.njit(nogil=True, error_model="numpy")(self.function)
+        # The folder's name covers the sources of the kernels that this one calls: numba would
+        # compare a cached kernel with its own file alone.
+        folder = kernel_folder(self.function.__module__.partition(".")[0])
+        if folder is not None and dispatcher is not self.function:
+            dispatcher._cache = OverloadCache(folder, self.function)
+        return dispatcher
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a function to machine code that runs without the interpreter's lock, when it is first called.
 
-    The code is kept on disk in `cache_folder`, so that a second process finds it ready.
+    The code is kept in `kernel_folder`, so that a second process need not compile it again.
     Division by zero follows IEEE 754, as in numpy; the order of floating-point operations
     is the one written (no `fastmath`), so results do not depend on the vector width.
     """
@@ -54,37 +56,11 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @cache
-def _have_kernels_understood() -> None:
-    """Teach numba that a kernel which another one calls is its own dispatcher."""
+def _register_kernels() -> None:
+    """Have numba take a kernel that another one calls for its dispatcher."""
     from numba import types
     from numba.extending import typeof_impl
 
     @typeof_impl.register(Kernel)
     def _(value: Kernel, _: Any) -> types.Dispatcher:
         return types.Dispatcher(value.compiled)
-
-
-@cache
-def cache_folder(package: str = "algorithms") -> Path:
-    """Return where the kernels of a package are kept: one folder for each state of their sources.
-
-    The folder lies below `$XDG_CACHE_HOME/hough-tui` (by default `~/.cache/hough-tui`); its
-    name is a hash of the sources of this package and of the given one.
-    """
-    # Not asked of numba itself, which would have to be loaded for it.
-    digest = hashlib.sha256(version("numba").encode())
-    for name in sorted({__name__.partition(".")[0], package}):
-        spec = importlib.util.find_spec(name)
-        locations = (spec.submodule_search_locations if spec else None) or ()
-        for location in locations:
-            for source in sorted(Path(location).rglob("*.py")):
-                digest.update(source.relative_to(location).as_posix().encode())
-                digest.update(source.read_bytes())
-    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    return Path(base) / "hough-tui" / f"kernels-{digest.hexdigest()[:16]}"
-
-
-def is_cold() -> bool:
-    """Return whether nothing of this state of the kernels has been compiled yet."""
-    folder = cache_folder()
-    return not folder.exists() or next(folder.rglob("*.nbc"), None) is None

@@ -2,28 +2,23 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
+
+from algorithms.base_directories import base_directory
 
 NAME = "hough-tui"
 
 
 def data_directory() -> Path:
     """Return where results are kept."""
-    return _base("XDG_DATA_HOME", ".local/share") / NAME
+    return base_directory("XDG_DATA_HOME") / NAME
 
 
 def config_directory() -> Path:
     """Return where the user's settings are."""
-    return _base("XDG_CONFIG_HOME", ".config") / NAME
+    return base_directory("XDG_CONFIG_HOME") / NAME
 
 
 def state_directory() -> Path:
     """Return where unsaved work is kept aside."""
-    return _base("XDG_STATE_HOME", ".local/state") / NAME
-
-
-def _base(variable: str, default: str) -> Path:
-    given = os.environ.get(variable, "")
-    # The specification has relative paths ignored.
-    return Path(given) if os.path.isabs(given) else Path.home() / default
+    return base_directory("XDG_STATE_HOME") / NAME

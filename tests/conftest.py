@@ -23,7 +23,7 @@ PARTS = ("warm_plane()", "warm_space(); warming.warm_clustering()")
 
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Have two processes compile the kernels, one half each, before each worker would compile them all."""
-    from algorithms.compiled import is_cold
+    from algorithms.kernel_cache.folder import is_cold
 
     is_worker = hasattr(session.config, "workerinput")
     if not is_worker and session.config.getoption("numprocesses", None) and is_cold():

@@ -24,7 +24,9 @@ def reported(command: Callable[..., None]) -> Callable[..., None]:
     @functools.wraps(command)
     def run(*args: Any, **kwargs: Any) -> None:
         from algorithms.errors import RequestError, WorkFailedError
+        from algorithms.notices import listen
 
+        listen(tell)
         try:
             command(*args, **kwargs)
             sys.stdout.flush()
@@ -74,10 +76,10 @@ def refuse(condition: bool, message: str) -> None:
 
 def announce_compilation() -> None:
     """Say that kernels must be compiled, where they must."""
-    from algorithms.compiled import is_cold
+    from algorithms.kernel_cache.folder import can_keep, is_cold
 
     if is_cold():
-        tell("compiling the kernels, once for this version: up to a minute")
+        tell("compiling the kernels" + (", once for this version" if can_keep() else "") + ": up to a minute")
 
 
 class EndedError(KeyboardInterrupt):

@@ -82,12 +82,16 @@ def batch(
 
 def keep_run(run: Any) -> int:
     """Keep a run and say where; return the exit status, since a full disk must not cost the result."""
+    from algorithms.errors import RequestError
     from hough_tui.experiments.stores.folder import FolderStore
 
     try:
         name = FolderStore().add(run)
     except OSError as error:
         tell(f"the run could not be kept: {error.filename or ''}: {error.strerror or error}")
+        return FAILED
+    except RequestError as error:
+        tell(f"the run could not be kept: {error}")
         return FAILED
     tell(f"kept as {name}" + ("" if run.document["complete"] else " (the finished trials only)"))
     return 0

@@ -40,7 +40,8 @@ if TYPE_CHECKING:
 AUTOSAVE_DELAY = 0.8
 """Seconds after a change until the set is kept aside."""
 
-COMPILING = "compiling kernels, once, up to two minutes"
+NOTICE_SECONDS = 15.0
+"""Seconds that a notice stays on the screen."""
 
 WARM_AT_LATEST = 1.5
 """Seconds after a set is opened until kernels are loaded, even if it shows no draw for which they are."""
@@ -70,7 +71,8 @@ class HoughApp(App[None]):
         self.workspace: Workspace | None = None
         self.wrong_setting: RequestError | None = None
         self._unanswered: Unsaved | None = None
-        self._is_cold = self._is_warming = False
+        self._compiling: str | None = None
+        self._is_warming = False
         self._main = MainScreen()
 
     def get_default_screen(self) -> Screen[Any]:
@@ -79,8 +81,10 @@ class HoughApp(App[None]):
 
     def on_mount(self) -> None:
         """Apply the settings, and begin to load what is heavy once the frame is painted."""
+        from algorithms.notices import listen
         from hough_tui.ui.terminal import on_ending_signals
 
+        listen(self._notice)
         on_ending_signals(self._end_by_signal)
         if self._config.theme in self.available_themes:
             self.theme = self._config.theme
@@ -88,6 +92,12 @@ class HoughApp(App[None]):
             self.notify(f"There is no theme '{self._config.theme}'", severity="warning", markup=False)
         self.set_keymap(self._config.keys)
         self.call_after_refresh(self._begin)
+
+    def _notice(self, message: str) -> None:
+        """Show a notice; it may come from any thread."""
+        self.call_later(
+            partial(self.notify, message, severity="warning", markup=False, timeout=NOTICE_SECONDS)
+        )
 
     def _begin(self) -> None:
         self._main.tell_state("loading")
@@ -98,8 +108,8 @@ class HoughApp(App[None]):
     @work(thread=True, exclusive=True, exit_on_error=False, group="load", name="load")
     def _load(self, name: str | None) -> None:
         """Import what is heavy, read a set, and look for unsaved work."""
-        from algorithms.compiled import is_cold
         from algorithms.errors import RequestError
+        from algorithms.kernel_cache.folder import can_keep, is_cold
         from hough_tui.ui.autosave import aside_file, read_aside, unsaved_work
         from scenarios.files.bundled import bundled_paths
         from scenarios.files.set_files import bundled_sets, load_set, locate
@@ -112,7 +122,8 @@ class HoughApp(App[None]):
             except RequestError as error:
                 self.call_from_thread(self._refuse_settings, error)
                 return
-        self._is_cold = self._is_cold or is_cold()
+        if is_cold():
+            self._compiling = f"compiling kernels{', once' if can_keep() else ''}, up to two minutes"
         if name is None:
             self.call_from_thread(self._welcome, bundled_sets(), unsaved_work())
             return
@@ -165,7 +176,7 @@ class HoughApp(App[None]):
         if is_recovered:
             self.workspace.forget_saved()
         # The first draw compiles some already.
-        self._main.tell_state(COMPILING if self._is_cold else None)
+        self._main.tell_state(self._compiling)
         self._main.show_workspace(self.workspace)
         self._unanswered = kept
         self.set_timer(WARM_AT_LATEST, self._warm_once)
@@ -214,7 +225,7 @@ class HoughApp(App[None]):
     @on(Prepared)
     def _end_preparing(self, event: Prepared) -> None:
         interpreter.settle()
-        self._is_cold = False
+        self._compiling = None
         self._main.tell_state(None)
         if event.error is not None:
             self._tell_error(event.error)

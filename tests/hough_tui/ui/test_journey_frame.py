@@ -5,6 +5,7 @@ import threading
 from textual.command import CommandPalette
 from textual.widgets import OptionList
 
+from algorithms.kernel_cache.folder import KernelFolder
 from hough_tui.ui.config import read_config
 from hough_tui.ui.widgets.heatmap import Heatmap
 from hough_tui.ui.widgets.plane import Plane
@@ -225,7 +226,7 @@ def test_a_set_that_cannot_be_opened_tells_why_and_another_one_can_be_chosen(dri
 
 def test_that_kernels_are_compiled_is_told_until_they_are(drive, monkeypatch):
     ready = threading.Event()
-    monkeypatch.setattr("algorithms.compiled.is_cold", lambda: True)
+    monkeypatch.setattr("algorithms.kernel_cache.folder.is_cold", lambda: True)
     monkeypatch.setattr("hough_tui.ui.warming.warm", lambda given: ready.wait(60))
 
     async def journey(user):
@@ -233,6 +234,26 @@ def test_that_kernels_are_compiled_is_told_until_they_are(drive, monkeypatch):
         ready.set()
         await user.warm()
         assert "compiling" not in user.text
+
+    drive(journey, "course-report", opens=False)
+
+
+def test_kernels_that_cannot_be_kept_are_told_once(drive, monkeypatch, tmp_path):
+    ready = threading.Event()
+    monkeypatch.setattr("algorithms.notices._notices", [])
+    monkeypatch.setattr("hough_tui.ui.app.NOTICE_SECONDS", 600)
+    in_the_way = tmp_path / "hough-tui"
+    in_the_way.touch()
+    folder = KernelFolder(in_the_way / "kernels-algorithms-0123456789abcdef")
+    monkeypatch.setattr("algorithms.kernel_cache.folder.kernel_folder", lambda package="algorithms": folder)
+    monkeypatch.setattr("hough_tui.ui.warming.warm", lambda given: ready.wait(60))
+
+    async def journey(user):
+        await user.sees("the compiled kernels cannot be kept in")
+        assert len(user.app._notifications) == 1
+        assert user.app._compiling == "compiling kernels, up to two minutes"
+        ready.set()
+        await user.warm()
 
     drive(journey, "course-report", opens=False)
 

@@ -1,0 +1,1 @@
+"""Machine code of the kernels, kept on disk from one process to the next."""
