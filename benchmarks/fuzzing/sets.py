@@ -226,10 +226,7 @@ MUTATIONS: tuple[Callable[[random.Random, Any], None], ...] = (
     *(change_number,) * 18,
     *(change_numbers,) * 4,
     *(repeat,) * 2,
-    *(sweep,) * 2,
-    *(add,) * 2,
-    *(say_another_word,) * 2,
-    *(drop, rename, change_text, reshape, swap, nest),
+    *(sweep, add, say_another_word, drop, rename, change_text, reshape, swap, nest),
 )
 
 
