@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
 from algorithms.hough.lines import separation
+from algorithms.target_states import TargetStates
 from algorithms.tracks import TrackChunk
 
 FALSE, FINDER, DUPLICATE = 0, 1, 2
@@ -48,12 +49,14 @@ class Truth:
         stands still
     middle : float64 (trials, targets, 2), the middle of each target's path
     origin : int32 (plots of the chunk,), the target that caused each plot, −1 for clutter
+    states : where each target is at every scan of each trial; None where lines and plots alone are judged
     """
 
     theta: NDArray[np.float64]
     rho: NDArray[np.float64]
     middle: NDArray[np.float64]
     origin: NDArray[np.int32]
+    states: TargetStates | None = None
 
     @property
     def targets(self) -> int:

@@ -84,6 +84,26 @@ def convert(measured, sigma, ways, mean, covariance):  # type: ignore[no-untyped
 
 
 @kernel
+def to_polar(place, station, sensor, measured):  # type: ignore[no-untyped-def]
+    """Write range, azimuth and, in space, elevation of a place as a sensor sees it.
+
+    Parameters
+    ----------
+    place : float64 (d,)
+    station, sensor : float64 (sensors, d) and a row of it, no view, which would cost more than the rest
+    measured : float64 (d,), changed in place
+    """
+    x, y = place[0] - station[sensor, 0], place[1] - station[sensor, 1]
+    ground = math.sqrt(x * x + y * y)
+    measured[0] = ground
+    measured[1] = math.atan2(x, y)
+    if len(place) > 2:
+        z = place[2] - station[sensor, 2]
+        measured[0] = math.sqrt(ground * ground + z * z)
+        measured[2] = math.atan2(z, ground)
+
+
+@kernel
 def _converted(measured, sigma, mean, covariance):  # type: ignore[no-untyped-def]
     ways = np.empty((2 * measured.shape[1] - 1, measured.shape[1]))
     for row in range(len(measured)):

@@ -10,26 +10,56 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
 from algorithms.streams import normal_pair, uniform_pair
+from algorithms.target_states import TargetStates
 from scenarios.conversion import polar
 from scenarios.model import Scenario
 from scenarios.sensors import PolarSensor
-from scenarios.simulate import NOISE, SENSOR, draw
+from scenarios.simulate import draw
+from scenarios.streams import CLUTTER_POINTS, NOISE, POINTS, SENSOR, Streams, target_stream
 from scenarios.targets import Extension
 from scenarios.world import World
 
 Array = NDArray[np.float64]
 
-POINTS = 16
-"""First block of a target's stream in a scan from which its points are drawn, two blocks a point."""
 
-CLUTTER = SENSOR - 2
-"""Stream of a sensor, beyond those of its targets, that gives Doppler and amplitude of clutter."""
+class Cells(NamedTuple):
+    """What sensors of high resolution tell apart.
+
+    Attributes
+    ----------
+    range_cell, beam_width, first_azimuth, azimuth_span, doppler_cell : float64 (sensors,)
+    beams, doppler_cells : int64 (sensors,), number of beams of the sector, and of Doppler cells
+    noise : float64 (sensors, 2), on range and azimuth
+    """
+
+    range_cell: Array
+    beam_width: Array
+    first_azimuth: Array
+    azimuth_span: Array
+    doppler_cell: Array
+    beams: NDArray[np.int64]
+    doppler_cells: NDArray[np.int64]
+    noise: Array
+
+
+class Extents(NamedTuple):
+    """What targets look like to such sensors.
+
+    Attributes
+    ----------
+    counts : int64 (targets,), points of each target
+    shape : float64 (targets, 4), spread in range and in radial speed, correlation, amplitude
+    """
+
+    counts: NDArray[np.int64]
+    shape: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,51 +69,47 @@ class ResolvedWorld:
     Attributes
     ----------
     world : without noise
-    range_cell, beam_width, first_azimuth, doppler_cell : float64 (sensors,)
-    beams, doppler_cells : int64 (sensors,), number of beams of the sector, and of Doppler cells
-    noise : float64 (sensors, 2), on range and azimuth
-    counts : int64 (targets,), points of each target
-    extent : float64 (targets, 4), spread in range and in radial speed, correlation, amplitude
+    cells, extents : of its sensors and of its targets
     """
 
     world: World
-    range_cell: Array
-    beam_width: Array
-    first_azimuth: Array
-    doppler_cell: Array
-    beams: NDArray[np.int64]
-    doppler_cells: NDArray[np.int64]
-    noise: Array
-    counts: NDArray[np.int64]
-    extent: Array
+    cells: Cells
+    extents: Extents
 
     @classmethod
     def of(cls, scenario: Scenario) -> ResolvedWorld:
         """Return the arrays of a scenario whose sensors have a resolution."""
         world = World.of(scenario)
         sensors = [sensor for sensor in scenario.sensors if isinstance(sensor, PolarSensor)]
-        cells = [sensor.resolution for sensor in sensors if sensor.resolution is not None]
-        widths = np.radians([cell.beam_width_deg for cell in cells])
-        spans = world.limits[:, 1, 1] - world.limits[:, 1, 0]
-        extents = [target.extended or ONE_POINT for target in scenario.targets]
-        given = [(one.range_spread, one.doppler_spread, one.correlation, one.amplitude) for one in extents]
-        return cls(
-            replace(world, sigma=np.zeros_like(world.sigma)),
-            np.array([cell.range_cell for cell in cells]),
+        resolutions = [sensor.resolution for sensor in sensors if sensor.resolution is not None]
+        widths = np.radians([resolution.beam_width_deg for resolution in resolutions])
+        azimuths = world.measurement.limits[:, 1]
+        spans = azimuths[:, 1] - azimuths[:, 0]
+        cells = Cells(
+            np.array([resolution.range_cell for resolution in resolutions]),
             widths,
-            world.limits[:, 1, 0].copy(),
-            np.array([cell.doppler_cell for cell in cells]),
+            azimuths[:, 0].copy(),
+            spans,
+            np.array([resolution.doppler_cell for resolution in resolutions]),
             np.ceil(spans / widths - 1e-9).astype(np.int64),
-            np.array([cell.doppler_cells for cell in cells], np.int64),
+            np.array([resolution.doppler_cells for resolution in resolutions], np.int64),
             np.array([sensor.noise[:2] for sensor in sensors]),
-            np.array([found.points for found in extents], np.int64),
-            np.array(given, float).reshape(-1, 4),
+        )
+        extents = [target.extended or ONE_POINT for target in scenario.targets]
+        shapes = [(one.range_spread, one.doppler_spread, one.correlation, one.amplitude) for one in extents]
+        noiseless = world.measurement._replace(sigma=np.zeros_like(world.measurement.sigma))
+        return cls(
+            replace(world, measurement=noiseless),
+            cells,
+            Extents(
+                np.array([one.points for one in extents], np.int64), np.array(shapes, float).reshape(-1, 4)
+            ),
         )
 
     def ideal(self) -> ResolvedWorld:
         """Return the same where each target is one point, at its place."""
-        extent = self.extent * (0.0, 0.0, 0.0, 1.0)
-        return replace(self, counts=np.ones_like(self.counts), extent=extent)
+        shape = self.extents.shape * (0.0, 0.0, 0.0, 1.0)
+        return replace(self, extents=Extents(np.ones_like(self.extents.counts), shape))
 
 
 ONE_POINT = Extension(points=1)
@@ -102,7 +128,7 @@ class PointDraw:
     amplitude : float64 (n,), linear
     origin : int32 (n,), the target of each point, −1 for clutter
     offsets : int64 (trials + 1,), where each trial's points begin
-    shift : float64 (trials, targets, d), how far from its `position` each target began
+    states : where each target was at every scan of each trial
     """
 
     scan: NDArray[np.int32]
@@ -114,18 +140,37 @@ class PointDraw:
     amplitude: Array
     origin: NDArray[np.int32]
     offsets: NDArray[np.int64]
-    shift: Array
+    states: TargetStates
 
     def without_targets(self) -> PointDraw:
         """Return the same draw with the points of the targets taken out: the control."""
         kept = self.origin < 0
         before = np.concatenate([[0], np.cumsum(kept)]).astype(np.int64)
         columns = {name: getattr(self, name)[kept] for name in COLUMNS}
-        return PointDraw(**columns, offsets=before[self.offsets], shift=self.shift)
+        return PointDraw(**columns, offsets=before[self.offsets], states=self.states)
 
 
 COLUMNS = ("scan", "time", "sensor", "beam", "range", "doppler", "amplitude", "origin")
 """The columns that have a value of each point."""
+
+
+class SeenPlots(NamedTuple):
+    """The plots of a chunk of trials as sensors see them, one row a plot.
+
+    Attributes
+    ----------
+    trial : int64 (n,), counted from the first of the chunk
+    scan, origin : int32 (n,)
+    place : float64 (n, 2), from the sensor
+    range, azimuth : float64 (n,)
+    """
+
+    trial: NDArray[np.int64]
+    scan: NDArray[np.int32]
+    origin: NDArray[np.int32]
+    place: Array
+    range: Array
+    azimuth: Array
 
 
 @kernel
@@ -134,75 +179,80 @@ def _amplitude(chance, scale):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _beam(azimuth, first, width, beams, span):  # type: ignore[no-untyped-def]
+def _beam(azimuth, cells, sensor):  # type: ignore[no-untyped-def]
     """Return the beam that holds an azimuth; beside the sector the nearest."""
-    turned = (azimuth - first) % (2.0 * math.pi)
+    turned = (azimuth - cells.first_azimuth[sensor]) % (2.0 * math.pi)
+    beams, span = cells.beams[sensor], cells.azimuth_span[sensor]
     if turned > span:
         return beams - 1 if turned - span <= 2.0 * math.pi - turned else np.int64(0)
-    return min(np.int64(turned / width), beams - 1)
+    return min(np.int64(turned / cells.beam_width[sensor]), beams - 1)
 
 
 @kernel
-def _folded(speed, cell, cells):  # type: ignore[no-untyped-def]
+def _folded(speed, cells, sensor):  # type: ignore[no-untyped-def]
     """Return the Doppler cell of a radial speed."""
-    return np.int64(math.floor(speed / cell + 0.5 * cells)) % cells
+    count = cells.doppler_cells[sensor]
+    return np.int64(math.floor(speed / cells.doppler_cell[sensor] + 0.5 * count)) % count
 
 
 @kernel
-def _points(  # type: ignore[no-untyped-def]
-    seed, first_trial, trial_of, scan, ranges, azimuths, place, origin, velocity, limits, scan_sensor,
-    scan_number, range_cell, beam_width, first_azimuth, doppler_cell, beams, doppler_cells, noise, counts,
-    extent,
-):  # fmt: skip
-    """Return cells, beams, amplitudes, origins of the points, and the plot that each comes from."""
+def _points(plots, velocity, measurement, cells, extents, streams):  # type: ignore[no-untyped-def]
+    """Return cells, beams and amplitudes of the points, and the plot that each comes from.
+
+    Parameters
+    ----------
+    plots : of the scenario without noise, a record `SeenPlots`
+    velocity : float64 (trials, scans, targets, d)
+    measurement, cells, extents, streams : records
+    """
     number = 0
-    for plot in range(len(scan)):
-        number += counts[origin[plot]] if origin[plot] >= 0 else 1
-    cells, beam_of = np.empty((number, 3)), np.empty(number, np.int64)
+    for target in plots.origin:
+        number += extents.counts[target] if target >= 0 else 1
+    point_of, beam_of = np.empty((number, 3)), np.empty(number, np.int64)
     parent = np.empty(number, np.int64)
     row, begin = 0, 0
-    while begin < len(scan):
+    while begin < len(plots.scan):
+        k, scan = plots.trial[begin], plots.scan[begin]
         end = begin
-        while end < len(scan) and scan[end] == scan[begin] and trial_of[end] == trial_of[begin]:
+        while end < len(plots.scan) and plots.scan[end] == scan and plots.trial[end] == k:
             end += 1
-        trial, sensor = first_trial + trial_of[begin], scan_sensor[scan[begin]]
-        count, span = scan_number[scan[begin]], limits[sensor, 1, 1] - limits[sensor, 1, 0]
+        trial, sensor, count = streams.first_trial + k, measurement.sensor[scan], measurement.number[scan]
         stray = 0
         # In the order of range, which targets among them do not change.
-        for index in np.argsort(ranges[begin:end]):
+        for index in np.argsort(plots.range[begin:end]):
             plot = begin + index
-            target, along, azimuth = origin[plot], ranges[plot], azimuths[plot]
+            target, along, azimuth = plots.origin[plot], plots.range[plot], plots.azimuth[plot]
             if target < 0:
-                u, v = uniform_pair(seed, stray, count, CLUTTER + SENSOR * sensor, trial)
+                u, v = uniform_pair(streams.seed, stray, count, CLUTTER_POINTS + SENSOR * sensor, trial)
                 stray += 1
-                cells[row, 0] = math.floor(along / range_cell[sensor])
-                cells[row, 1] = np.int64(u * doppler_cells[sensor])
-                cells[row, 2] = _amplitude(v, 1.0)
-                beam_of[row] = _beam(azimuth, first_azimuth[sensor], beam_width[sensor], beams[sensor], span)
+                point_of[row, 0] = math.floor(along / cells.range_cell[sensor])
+                point_of[row, 1] = np.int64(u * cells.doppler_cells[sensor])
+                point_of[row, 2] = _amplitude(v, 1.0)
+                beam_of[row] = _beam(azimuth, cells, sensor)
                 parent[row] = plot
                 row += 1
                 continue
-            stream = 2 * target + 1 + SENSOR * sensor
-            speed = 0.0
+            stream, speed = target_stream(target, sensor), 0.0
             if along > 0.0:
-                speed = (velocity[target, 0] * place[plot, 0] + velocity[target, 1] * place[plot, 1]) / along
-            x, y = normal_pair(seed, NOISE, count, stream, trial)
-            along += noise[sensor, 0] * x
-            azimuth += noise[sensor, 1] * y
-            beam = _beam(azimuth, first_azimuth[sensor], beam_width[sensor], beams[sensor], span)
-            r_spread, d_spread, correlation, scale = extent[target]
-            for point in range(counts[target]):
-                x, y = normal_pair(seed, POINTS + 2 * point, count, stream, trial)
-                chance, _ = uniform_pair(seed, POINTS + 2 * point + 1, count, stream, trial)
+                east, north = velocity[k, scan, target, 0], velocity[k, scan, target, 1]
+                speed = (east * plots.place[plot, 0] + north * plots.place[plot, 1]) / along
+            x, y = normal_pair(streams.seed, NOISE, count, stream, trial)
+            along += cells.noise[sensor, 0] * x
+            azimuth += cells.noise[sensor, 1] * y
+            beam = _beam(azimuth, cells, sensor)
+            r_spread, d_spread, correlation, scale = extents.shape[target]
+            for point in range(extents.counts[target]):
+                x, y = normal_pair(streams.seed, POINTS + 2 * point, count, stream, trial)
+                chance, _ = uniform_pair(streams.seed, POINTS + 2 * point + 1, count, stream, trial)
                 y = correlation * x + math.sqrt(1.0 - correlation * correlation) * y
-                cells[row, 0] = math.floor((along + r_spread * x) / range_cell[sensor])
-                cells[row, 1] = _folded(speed + d_spread * y, doppler_cell[sensor], doppler_cells[sensor])
-                cells[row, 2] = _amplitude(chance, scale)
+                point_of[row, 0] = math.floor((along + r_spread * x) / cells.range_cell[sensor])
+                point_of[row, 1] = _folded(speed + d_spread * y, cells, sensor)
+                point_of[row, 2] = _amplitude(chance, scale)
                 beam_of[row] = beam
                 parent[row] = plot
                 row += 1
         begin = end
-    return cells, beam_of, parent
+    return point_of, beam_of, parent
 
 
 def draw_points(resolved: ResolvedWorld, seed: int, first_trial: int, trials: int = 1) -> PointDraw:
@@ -221,24 +271,23 @@ def draw_points(resolved: ResolvedWorld, seed: int, first_trial: int, trials: in
     in one dwell, whose azimuth is the centre of the beam: a target on the border of two beams is not seen
     in both. A source of clutter gives one point where it gives one plot, of a Doppler cell by chance.
     """
-    world = resolved.world
-    drawn = draw(world, seed, first_trial, trials)
-    chunk = drawn.chunk
+    measurement = resolved.world.measurement
+    drawn = draw(resolved.world, seed, first_trial, trials)
+    chunk, states = drawn.chunk, drawn.states
     trial_of = np.repeat(np.arange(trials), np.diff(chunk.offsets))
-    seen_from = np.ascontiguousarray(chunk.position - world.station[world.scan_sensor[chunk.scan]])
-    measured = polar(seen_from)
+    place = np.ascontiguousarray(chunk.position - measurement.station[measurement.sensor[chunk.scan]])
+    measured = polar(place)
+    plots = SeenPlots(trial_of, chunk.scan, drawn.origin, place, measured[:, 0].copy(), measured[:, 1].copy())
+    streams = Streams(np.uint64(seed), first_trial, trials)
     cells, beam, parent = _points(
-        np.uint64(seed), first_trial, trial_of, chunk.scan, measured[:, 0].copy(), measured[:, 1].copy(),
-        seen_from, drawn.origin, world.velocity, world.limits, world.scan_sensor, world.scan_number,
-        resolved.range_cell, resolved.beam_width, resolved.first_azimuth, resolved.doppler_cell,
-        resolved.beams, resolved.doppler_cells, resolved.noise, resolved.counts, resolved.extent,
-    )  # fmt: skip
+        plots, states.velocity, measurement, resolved.cells, resolved.extents, streams
+    )
     order = np.lexsort((cells[:, 1], cells[:, 0], beam, chunk.scan[parent], trial_of[parent]))
     parent, cells = parent[order], cells[order]
     scan = chunk.scan[parent]
     offsets = np.searchsorted(trial_of[parent], np.arange(trials + 1)).astype(np.int64)
     along, doppler, amplitude = (np.ascontiguousarray(cells[:, column]) for column in range(3))
     return PointDraw(
-        scan, chunk.time[parent], world.scan_sensor[scan], beam[order], along, doppler, amplitude,
-        drawn.origin[parent], offsets, drawn.shift,
+        scan, chunk.time[parent], measurement.sensor[scan], beam[order], along, doppler, amplitude,
+        drawn.origin[parent], offsets, states,
     )  # fmt: skip

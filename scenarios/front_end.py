@@ -44,8 +44,9 @@ def dwell_offsets(drawn: PointDraw) -> NDArray[np.int64]:
 
 def measured_points(resolved: ResolvedWorld, drawn: PointDraw) -> dict[str, list[float]]:
     """Return what was measured of points: the azimuth of the dwell in degrees, and the range of the cell."""
-    azimuth = resolved.first_azimuth[drawn.sensor] + (drawn.beam + 0.5) * resolved.beam_width[drawn.sensor]
-    along = (drawn.range + 0.5) * resolved.range_cell[drawn.sensor]
+    cells, sensor = resolved.cells, drawn.sensor
+    azimuth = cells.first_azimuth[sensor] + (drawn.beam + 0.5) * cells.beam_width[sensor]
+    along = (drawn.range + 0.5) * cells.range_cell[sensor]
     return {"dwell": np.degrees(azimuth).tolist(), "range": along.tolist()}
 
 
@@ -57,7 +58,7 @@ def every_point(resolved: ResolvedWorld, drawn: PointDraw) -> Draw:
     The standard deviation of a plot's range is that of the noise with that of a cell, 1/√12 of its size; its
     azimuth has those of the noise and of the beam.
     """
-    variance = resolved.range_cell[drawn.sensor] ** 2 / 12.0
+    variance = resolved.cells.range_cell[drawn.sensor] ** 2 / 12.0
     rows = np.arange(len(drawn.scan))
     return _plots(resolved, drawn, rows, drawn.range, drawn.doppler, drawn.amplitude, variance, drawn.origin)
 
@@ -80,9 +81,9 @@ def clustered(resolved: ResolvedWorld, drawn: PointDraw, parameters: Clustering)
     """
     offsets = dwell_offsets(drawn)
     first = offsets[:-1]
-    opened = cut_open(drawn.doppler, offsets, resolved.doppler_cells[drawn.sensor[first]])
+    opened = cut_open(drawn.doppler, offsets, resolved.cells.doppler_cells[drawn.sensor[first]])
     clusters = cluster(Points.of(drawn.range, opened, drawn.amplitude, offsets), parameters)
-    targets = len(resolved.counts)
+    targets = len(resolved.extents.counts)
     members = clusters.label != NONE
     votes = np.bincount(
         clusters.label[members] * (targets + 1) + drawn.origin[members] + 1,
@@ -92,7 +93,7 @@ def clustered(resolved: ResolvedWorld, drawn: PointDraw, parameters: Clustering)
     own = votes[np.arange(len(clusters)), best + 1] if targets else np.zeros(len(clusters))
     origin = np.where(own >= np.maximum(votes[:, 0], 1), best, -1).astype(np.int32)
     rows = first[clusters.scan]
-    cell = resolved.range_cell[drawn.sensor[rows]]
+    cell = resolved.cells.range_cell[drawn.sensor[rows]]
     variance = cell**2 * _range_variance(drawn, clusters, is_mean=parameters.result == "mean")
     return _plots(
         resolved, drawn, rows, clusters.range, clusters.doppler, clusters.amplitude, variance, origin
@@ -134,28 +135,28 @@ def _plots(
     along, doppler : float64 (plots,), in cells
     variance : of the range of each, without the noise
     """
-    sensor, cells = drawn.sensor[rows], resolved.doppler_cells[drawn.sensor[rows]]
-    width = resolved.beam_width[sensor]
+    sensor, cells = drawn.sensor[rows], resolved.cells.doppler_cells[drawn.sensor[rows]]
+    width = resolved.cells.beam_width[sensor]
     measured = np.stack(
         [
-            (along + 0.5) * resolved.range_cell[sensor],
-            resolved.first_azimuth[sensor] + (drawn.beam[rows] + 0.5) * width,
+            (along + 0.5) * resolved.cells.range_cell[sensor],
+            resolved.cells.first_azimuth[sensor] + (drawn.beam[rows] + 0.5) * width,
         ],
         axis=1,
     )
-    noise = resolved.noise[sensor]
+    noise = resolved.cells.noise[sensor]
     sigma = np.sqrt(np.stack([variance + noise[:, 0] ** 2, width**2 / 12.0 + noise[:, 1] ** 2], axis=1))
     position, covariance = _converted_each(measured, sigma)
     # A plot of a cluster that was opened may lie beyond the last cell.
-    speed = ((doppler + 0.5) % cells - 0.5 * cells) * resolved.doppler_cell[sensor]
+    speed = ((doppler + 0.5) % cells - 0.5 * cells) * resolved.cells.doppler_cell[sensor]
     offsets = np.searchsorted(rows, drawn.offsets).astype(np.int64)
     chunk = PlotChunk(
         drawn.scan[rows],
         drawn.time[rows],
-        position + resolved.world.station[sensor],
+        position + resolved.world.measurement.station[sensor],
         offsets,
         covariance,
         amplitude,
         speed,
     )
-    return Draw(chunk, origin, drawn.shift)
+    return Draw(chunk, origin, drawn.states)

@@ -8,7 +8,6 @@ is the first part of one of more (but for clutter whose number is fixed for the 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,72 +17,14 @@ from algorithms.compiled import kernel
 from algorithms.hough.lines import line_through
 from algorithms.plots import PlotChunk
 from algorithms.scoring import Truth
-from algorithms.streams import normal_pair, uniform_pair
-from scenarios.conversion import convert
+from algorithms.target_states import TargetStates
+from scenarios.clutter_plots import clutter_numbers, put_clutter, sort_batch
 from scenarios.model import Scenario
-from scenarios.world import BOX, VOLUME, World
+from scenarios.streams import Streams
+from scenarios.target_plots import target_plots, target_states
+from scenarios.world import World
 
 Array = NDArray[np.float64]
-
-# Blocks of a target's stream in a scan; that of its start is in scan 0, whatever the sensor.
-SEEN, NOISE, START, START_IN_SPACE, NOISE_IN_SPACE = 0, 1, 2, 3, 4
-
-SENSOR = 1 << 20
-"""Distance of the streams of one sensor from those of the next."""
-
-IN_SPACE = 1 << 31
-"""What is added to the block of a plot's place for the third number of it."""
-
-
-@kernel
-def _stream(source, is_target, sensor):  # type: ignore[no-untyped-def]
-    return 2 * source + is_target + SENSOR * sensor
-
-
-# The kernels take whole arrays and a row of each, no views: to make one costs more than a plot.
-
-
-@kernel
-def _to_polar(place, station, sensor, measured):  # type: ignore[no-untyped-def]
-    """Write range, azimuth and, in space, elevation of a place as a sensor sees it."""
-    x, y = place[0] - station[sensor, 0], place[1] - station[sensor, 1]
-    ground = math.sqrt(x * x + y * y)
-    measured[0] = ground
-    measured[1] = math.atan2(x, y)
-    if len(place) > 2:
-        z = place[2] - station[sensor, 2]
-        measured[0] = math.sqrt(ground * ground + z * z)
-        measured[2] = math.atan2(z, ground)
-
-
-@kernel
-def _is_in_sector(measured, limits, sensor):  # type: ignore[no-untyped-def]
-    if not limits[sensor, 0, 0] <= measured[0] <= limits[sensor, 0, 1]:
-        return False
-    if len(measured) > 2 and not limits[sensor, 2, 0] <= measured[2] <= limits[sensor, 2, 1]:
-        return False
-    turns = math.ceil((limits[sensor, 1, 0] - measured[1]) / (2.0 * math.pi))
-    return measured[1] + 2.0 * math.pi * turns <= limits[sensor, 1, 1]
-
-
-@kernel
-def _put_converted(measured, sigma, station, sensor, ways, plots, covariance, row):  # type: ignore[no-untyped-def]
-    """Write what a polar measurement is converted to as a plot."""
-    convert(measured, sigma[sensor], ways, plots[row], covariance[row])
-    for axis in range(len(measured)):
-        plots[row, axis] += station[sensor, axis]
-
-
-@kernel
-def _put_plain(place, sigma, sensor, plots, covariance, row):  # type: ignore[no-untyped-def]
-    """Write a cartesian measurement as a plot, with its covariance where others have one."""
-    for axis in range(len(place)):
-        plots[row, axis] = place[axis]
-    if len(covariance) > 0:
-        for axis in range(len(place)):
-            for other in range(len(place)):
-                covariance[row, axis, other] = 0.0
-            covariance[row, axis, axis] = sigma[sensor, axis] ** 2
 
 
 @kernel
@@ -99,198 +40,60 @@ def _move(plots, covariance, origin, row, at):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _sector_point(u, v, w, limits, sensor, is_volume, measured):  # type: ignore[no-untyped-def]
-    """Write the polar coordinates of a random point of a sector."""
-    near, far = limits[sensor, 0, 0], limits[sensor, 0, 1]
-    axes = len(measured)
-    if is_volume:
-        power = float(axes)
-        measured[0] = (near**power + u * (far**power - near**power)) ** (1.0 / power)
-    else:
-        measured[0] = near + u * (far - near)
-    measured[1] = limits[sensor, 1, 0] + v * (limits[sensor, 1, 1] - limits[sensor, 1, 0])
-    if axes > 2:
-        low, high = limits[sensor, 2, 0], limits[sensor, 2, 1]
-        if is_volume:
-            measured[2] = math.asin(math.sin(low) + w * (math.sin(high) - math.sin(low)))
-        else:
-            measured[2] = low + w * (high - low)
+def _merged(own, clutter, measurement, streams):  # type: ignore[no-untyped-def]
+    """Return the plots of trials: those of clutter as they are drawn, those of targets put among them.
 
+    Parameters
+    ----------
+    own : the plots of targets, a record `TargetPlots`
+    clutter, measurement, streams : records
 
-@kernel
-def _scan_count(seed, trial, number, sensor, source, counts, count_offsets, fixed):  # type: ignore[no-untyped-def]
-    """Return the number of plots that a source has in a scan, those of the batch left out."""
-    if count_offsets[source] == count_offsets[source + 1]:
-        return fixed[source, 0]
-    chance, _ = uniform_pair(seed, 0, number, _stream(source, 0, sensor), trial)
-    distribution = counts[count_offsets[source] : count_offsets[source + 1]]
-    return min(np.searchsorted(distribution, chance, side="right"), len(distribution) - 1)
-
-
-@kernel
-def _scan_of(seed, trial, scans, source, plot):  # type: ignore[no-untyped-def]
-    """Return the scan into which a plot of the batch falls, and the block that its place is drawn from."""
-    block = 2 * plot
-    chance, _ = uniform_pair(seed, block, 0, _stream(source, 0, 0), trial)
-    return min(np.int64(chance * scans), scans - 1), block + 1
-
-
-@kernel
-def _by_scan(seed, trial, scans, source, number, begins, order):  # type: ignore[no-untyped-def]
-    """Sort the plots of a batch by their scans: those of scan s are order[begins[s]:begins[s + 1]]."""
-    begins[:] = 0
-    for plot in range(number):
-        scan, _ = _scan_of(seed, trial, scans, source, plot)
-        begins[scan + 1] += 1
-    for scan in range(scans):
-        begins[scan + 1] += begins[scan]
-    # From behind, each scan's end is counted down to its begin, which is where it belongs.
-    for plot in range(number - 1, -1, -1):
-        scan, _ = _scan_of(seed, trial, scans, source, plot)
-        begins[scan + 1] -= 1
-        order[begins[scan + 1]] = plot
-    begins[:-1] = begins[1:]
-    begins[scans] = number
-
-
-@kernel
-def _place_clutter(  # type: ignore[no-untyped-def]
-    seed, trial, block, number, stream, source, sensor, uniform, lower, size, is_polar, station, sigma,
-    limits, place, measured, ways, plots, covariance, row,
-):  # fmt: skip
-    """Write a plot of clutter and, for a polar sensor, its covariance."""
-    axes = len(place)
-    u, v = uniform_pair(seed, block, number, stream, trial)
-    w = 0.0
-    if axes > 2:
-        w, _ = uniform_pair(seed, block + IN_SPACE, number, stream, trial)
-    if uniform[source] == BOX:
-        place[0] = lower[source, 0] + u * size[source, 0]
-        place[1] = lower[source, 1] + v * size[source, 1]
-        if axes > 2:
-            place[2] = lower[source, 2] + w * size[source, 2]
-        if not is_polar[sensor]:
-            _put_plain(place, sigma, sensor, plots, covariance, row)
-            return
-        _to_polar(place, station, sensor, measured)
-    else:
-        _sector_point(u, v, w, limits, sensor, uniform[source] == VOLUME, measured)
-    _put_converted(measured, sigma, station, sensor, ways, plots, covariance, row)
-
-
-@kernel
-def _draw(  # type: ignore[no-untyped-def]
-    seed, first_trial, trials, position, velocity, spread, begin, end, scan_time, scan_sensor, scan_number,
-    is_polar, station, sigma, limits, probability, counts, count_offsets, fixed, uniform, lower, size,
-):  # fmt: skip
-    scans, sources, targets, axes = len(scan_time), len(count_offsets) - 1, len(begin), sigma.shape[1]
-    shift = np.zeros((trials, targets, axes), np.float64)
+    Returns
+    -------
+    scan, time, plots, covariance, origin, offsets
+    """
+    numbers = clutter_numbers(clutter, measurement, streams)
+    trials, scans, sources = numbers.shape
+    axes = own.position.shape[1]
     offsets = np.zeros(trials + 1, np.int64)
-    place, measured, noise = np.empty(axes), np.empty(axes), np.empty(axes)
-    ways = np.empty((2 * axes - 1, axes))
     for k in range(trials):
-        trial = first_trial + k
-        for target in range(targets):
-            u, v = uniform_pair(seed, START, 0, _stream(target, 1, 0), trial)
-            shift[k, target, 0] = (2.0 * u - 1.0) * spread[target, 0]
-            shift[k, target, 1] = (2.0 * v - 1.0) * spread[target, 1]
-            if axes > 2:
-                w, _ = uniform_pair(seed, START_IN_SPACE, 0, _stream(target, 1, 0), trial)
-                shift[k, target, 2] = (2.0 * w - 1.0) * spread[target, 2]
-        total = fixed[:, 1].sum()
-        for scan in range(scans):
-            sensor, number = scan_sensor[scan], scan_number[scan]
-            for source in range(sources):
-                total += _scan_count(seed, trial, number, sensor, source, counts, count_offsets, fixed)
-            time = scan_time[scan]
-            for target in range(targets):
-                if not begin[target] <= time <= end[target]:
-                    continue
-                chance, _ = uniform_pair(seed, SEEN, number, _stream(target, 1, sensor), trial)
-                if chance >= probability[sensor]:
-                    continue
-                if is_polar[sensor]:
-                    for axis in range(axes):
-                        start = position[target, axis] + shift[k, target, axis]
-                        place[axis] = start + velocity[target, axis] * (time - begin[target])
-                    _to_polar(place, station, sensor, measured)
-                    if not _is_in_sector(measured, limits, sensor):
-                        continue
-                total += 1
-        offsets[k + 1] = offsets[k] + total
-    scan_column = np.empty(offsets[trials], np.int32)
-    time_column = np.empty(offsets[trials], np.float64)
+        of_targets = own.begins[(k + 1) * scans] - own.begins[k * scans]
+        offsets[k + 1] = offsets[k] + numbers[k].sum() + clutter.fixed[:, 1].sum() + of_targets
+    scan_column, time_column = np.empty(offsets[trials], np.int32), np.empty(offsets[trials], np.float64)
     origin = np.empty(offsets[trials], np.int32)
     plots = np.empty((offsets[trials], axes), np.float64)
-    covariance = np.empty((offsets[trials] if is_polar.any() else 0, axes, axes), np.float64)
-    is_flat = axes == 2 and not is_polar.any()
-    begins = np.zeros((sources, scans + 1), np.int64)
-    order = np.empty((sources, fixed[:, 1].max() if sources > 0 else 0), np.int64)
+    is_polar = measurement.is_polar.any()
+    covariance = np.empty((offsets[trials] if is_polar else 0, axes, axes), np.float64)
+    space = np.empty(axes), np.empty(axes), np.empty((2 * axes - 1, axes))
+    largest = clutter.fixed[:, 1].max() if sources > 0 else 0
+    begins, order = np.zeros((sources, scans + 1), np.int64), np.empty((sources, largest), np.int64)
+    scan_of = np.empty(largest, np.int64)
     row = 0
     for k in range(trials):
-        trial = first_trial + k
-        for source in range(sources):
-            if fixed[source, 1] > 0:
-                _by_scan(seed, trial, scans, source, fixed[source, 1], begins[source], order[source])
+        trial = streams.first_trial + k
+        if largest > 0:
+            sort_batch(clutter, streams, trial, scans, begins, order, scan_of)
         for scan in range(scans):
-            first, time, number, sensor = row, scan_time[scan], scan_number[scan], scan_sensor[scan]
+            first = row
             for source in range(sources):
-                of_batch = begins[source, scan + 1] - begins[source, scan]
-                own = _scan_count(seed, trial, number, sensor, source, counts, count_offsets, fixed)
-                for plot in range(of_batch + own):
-                    if plot < of_batch:
-                        one = order[source, begins[source, scan] + plot]
-                        _, block = _scan_of(seed, trial, scans, source, one)
-                        drawn_in, stream = np.int64(0), _stream(source, 0, 0)
-                    else:
-                        block, drawn_in = plot - of_batch + 1, number
-                        stream = _stream(source, 0, sensor)
-                    origin[row] = -1
-                    if is_flat:
-                        # As `_place_clutter` does it; the call alone takes longer than the rest.
-                        u, v = uniform_pair(seed, block, drawn_in, stream, trial)
-                        plots[row, 0] = lower[source, 0] + u * size[source, 0]
-                        plots[row, 1] = lower[source, 1] + v * size[source, 1]
-                        row += 1
-                        continue
-                    _place_clutter(
-                        seed, trial, block, drawn_in, stream, source, sensor, uniform, lower, size, is_polar,
-                        station, sigma, limits, place, measured, ways, plots, covariance, row,
-                    )  # fmt: skip
-                    row += 1
-            for target in range(targets):
-                if not begin[target] <= time <= end[target]:
-                    continue
-                chance, rank = uniform_pair(seed, SEEN, number, _stream(target, 1, sensor), trial)
-                if chance >= probability[sensor]:
-                    continue
-                for axis in range(axes):
-                    start = position[target, axis] + shift[k, target, axis]
-                    place[axis] = start + velocity[target, axis] * (time - begin[target])
-                if is_polar[sensor]:
-                    _to_polar(place, station, sensor, measured)
-                    if not _is_in_sector(measured, limits, sensor):
-                        continue
-                stream = _stream(target, 1, sensor)
-                noise[0], noise[1] = normal_pair(seed, NOISE, number, stream, trial)
-                if axes > 2:
-                    noise[2], _ = normal_pair(seed, NOISE_IN_SPACE, number, stream, trial)
+                batch = order[source, begins[source, scan] : begins[source, scan + 1]]
+                row = put_clutter(
+                    trial, scan, source, numbers[k, scan, source], batch, clutter, measurement, streams,
+                    space, plots, covariance, row,
+                )  # fmt: skip
+            origin[first:row] = -1
+            for index in range(own.begins[k * scans + scan], own.begins[k * scans + scan + 1]):
                 # At a random place of its scan, so that no order tells targets from clutter.
-                at = first + np.int64(rank * (row - first + 1))
+                at = first + np.int64(own.rank[index] * (row - first + 1))
                 _move(plots, covariance, origin, at, row)
-                origin[at] = target
-                if is_polar[sensor]:
-                    for axis in range(axes):
-                        measured[axis] += sigma[sensor, axis] * noise[axis]
-                    _put_converted(measured, sigma, station, sensor, ways, plots, covariance, at)
-                else:
-                    for axis in range(axes):
-                        place[axis] += sigma[sensor, axis] * noise[axis]
-                    _put_plain(place, sigma, sensor, plots, covariance, at)
+                origin[at] = own.target[index]
+                plots[at] = own.position[index]
+                if is_polar:
+                    covariance[at] = own.covariance[index]
                 row += 1
             scan_column[first:row] = scan
-            time_column[first:row] = time
-    return scan_column, time_column, plots, covariance, origin, offsets, shift
+            time_column[first:row] = measurement.time[scan]
+    return scan_column, time_column, plots, covariance, origin, offsets
 
 
 @dataclass(frozen=True, slots=True)
@@ -301,17 +104,17 @@ class Draw:
     ----------
     chunk : the plots
     origin : int32 (n,), the target that caused each plot, −1 for clutter
-    shift : float64 (trials, targets, d), how far from its `position` each target began
+    states : where each target was at every scan of each trial
     """
 
     chunk: PlotChunk
     origin: NDArray[np.int32]
-    shift: Array
+    states: TargetStates
 
     def without_targets(self) -> Draw:
         """Return the same draw with the plots of the targets taken out: the control."""
         kept = self.origin < 0
-        return Draw(self.chunk.chosen(kept), self.origin[kept], self.shift)
+        return Draw(self.chunk.chosen(kept), self.origin[kept], self.states)
 
 
 def draw(world: World, seed: int, first_trial: int, trials: int = 1) -> Draw:
@@ -323,59 +126,25 @@ def draw(world: World, seed: int, first_trial: int, trials: int = 1) -> Draw:
     seed : in [0, 2⁶⁴)
     first_trial, trials : which trials; they are numbered from 0
     """
-    scan, time, position, covariance, origin, offsets, shift = _draw(
-        np.uint64(seed), first_trial, trials, world.position, world.velocity, world.spread, world.begin,
-        world.end, world.scan_time, world.scan_sensor, world.scan_number, world.is_polar, world.station,
-        world.sigma, world.limits, world.detection_probability, world.counts, world.count_offsets,
-        world.fixed, world.uniform, world.lower, world.size,
-    )  # fmt: skip
-    known = covariance if world.is_polar.any() else None
-    return Draw(PlotChunk(scan, time, position, offsets, known), origin, shift)
-
-
-def true_paths(scenario: Scenario, shift: Array) -> tuple[Array, ...]:
-    """Return the true positions of each target at the times of the scenario's interval.
-
-    Parameters
-    ----------
-    shift : float64 (targets, d), how far from its `position` each target began
-
-    Returns
-    -------
-    paths : for each target, float64 (times in which it is there, d)
-    """
-    paths = []
-    last = scenario.last_time
-    for target, moved in zip(scenario.targets, shift, strict=True):
-        begin, end = target.lifetime(scenario.interval)
-        steps = math.floor((min(end, last) - begin) / scenario.interval + 1e-9)
-        elapsed = np.arange(max(0, steps + 1)) * scenario.interval
-        paths.append(np.array(target.position) + moved + elapsed[:, None] * np.array(target.velocity))
-    return tuple(paths)
-
-
-def true_lines(scenario: Scenario, shift: Array) -> tuple[Array, Array]:
-    """Return θ and ρ of the targets' lines in the plane (x, y), NaN for one that stands still there.
-
-    Parameters
-    ----------
-    shift : float64 (…, targets, d), how far from its `position` each target began
-
-    Returns
-    -------
-    theta, rho : float64 (…, targets)
-    """
-    position = np.array([target.position[:2] for target in scenario.targets], dtype=float).reshape(-1, 2)
-    velocity = np.array([target.velocity[:2] for target in scenario.targets], dtype=float).reshape(-1, 2)
-    start = position + shift[..., :2]
-    return line_through(start, np.broadcast_to(velocity, start.shape))
+    ground, measurement = world.ground, world.measurement
+    streams = Streams(np.uint64(seed), first_trial, trials)
+    position, velocity, shift = target_states(ground, streams)
+    own = target_plots(position, ground.present, measurement, streams)
+    scan, time, plots, covariance, origin, offsets = _merged(own, world.clutter, measurement, streams)
+    known = covariance if measurement.is_polar.any() else None
+    return Draw(
+        PlotChunk(scan, time, plots, offsets, known),
+        origin,
+        TargetStates(measurement.time, ground.present, position, velocity, shift),
+    )
 
 
 def truth(scenario: Scenario, drawn: Draw) -> Truth:
     """Return the truth of a draw as the scorer takes it."""
-    theta, rho = true_lines(scenario, drawn.shift)
-    ends = [
-        [end[:2] for end in target.ends(scenario.interval, scenario.last_time)] for target in scenario.targets
-    ]
-    middle = np.array(ends, dtype=float).reshape(-1, 2, 2).mean(axis=1) + drawn.shift[..., :2]
-    return Truth(theta, rho, middle, drawn.origin)
+    targets, shift = scenario.targets, drawn.states.shift[..., :2]
+    start = np.array([target.position[:2] for target in targets], dtype=float).reshape(-1, 2) + shift
+    velocity = np.array([target.velocity[:2] for target in targets], dtype=float).reshape(-1, 2)
+    theta, rho = line_through(start, np.broadcast_to(velocity, start.shape))
+    ends = [[end[:2] for end in target.ends(scenario.interval, scenario.last_time)] for target in targets]
+    middle = np.array(ends, dtype=float).reshape(-1, 2, 2).mean(axis=1) + shift
+    return Truth(theta, rho, middle, drawn.origin, drawn.states)

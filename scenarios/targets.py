@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Annotated, Self
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from algorithms.parameters import (
@@ -96,6 +98,21 @@ class Target(Declared):
     def lifetime(self, interval: float) -> tuple[float, float]:
         """Return the times of the first and the last scan in which it is there; the last may be infinite."""
         return self.birth * interval, math.inf if self.death is None else self.death * interval
+
+    def is_present(self, time: NDArray[np.float64], interval: float) -> NDArray[np.bool_]:
+        """Return whether it is there at times."""
+        begin, end = self.lifetime(interval)
+        return (begin <= time) & (time <= end)
+
+    def course(self, elapsed: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return how far it has come and its velocity, float64 (n, d) each, at times since it appeared.
+
+        Parameters
+        ----------
+        elapsed : float64 (n,), seconds
+        """
+        velocity = np.array(self.velocity, dtype=float)
+        return elapsed[:, None] * velocity, np.broadcast_to(velocity, (len(elapsed), len(velocity)))
 
     def ends(self, interval: float, last: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return where its path begins and ends within a batch, as it is without `spread`.

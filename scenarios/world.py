@@ -1,9 +1,10 @@
-"""A scenario as the drawing kernel takes it: its arrays."""
+"""A scenario as the drawing kernels take it: records of arrays."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,83 +19,134 @@ BOX, VOLUME, SECTOR = 0, 1, 2
 """Where clutter is uniform: in a box, in a sensor's volume, in its coordinates."""
 
 
-@dataclass(frozen=True, slots=True)
-class World:
-    """A scenario as the drawing kernel takes it; d is its number of dimensions, 2 or 3.
+class Ground(NamedTuple):
+    """The targets: where each is at every scan before chance has a part in it, and what part it has.
 
     Attributes
     ----------
-    position, velocity, spread : float64 (targets, d), as each appears, and how far from there it may
-    begin, end : float64 (targets,), times between which each is there
-    scan_time : float64 (scans,), of all sensors, in order
-    scan_sensor, scan_number : int64 (scans,), which sensor each scan is of, and its number there
-    is_polar : whether the sensors measure range, azimuth and elevation; all do or none does
+    start : float64 (targets, d), where each appears
+    spread : float64 (targets, d), how far from there it may
+    displacement : float64 (scans, targets, d), from its start to its place; NaN where it is not there
+    velocity : float64 (scans, targets, d); NaN where it is not there
+    present : bool (scans, targets)
+    """
+
+    start: Array
+    spread: Array
+    displacement: Array
+    velocity: Array
+    present: NDArray[np.bool_]
+
+
+class Measurement(NamedTuple):
+    """The scans and the sensors; all sensors are polar or none is.
+
+    Attributes
+    ----------
+    time : float64 (scans,), of all sensors, in order
+    sensor, number : int64 (scans,), which sensor each scan is of, and its number there
+    is_polar : whether the sensors measure range, azimuth and elevation
     station : float64 (sensors, d), where each stands
     sigma : float64 (sensors, d), on x, y, z or on range, azimuth, elevation; radians
     limits : float64 (sensors, d, 2), the sector of each; infinite for one that sees everything
     detection_probability : float64 (sensors,)
-    counts : float64, the distribution functions of the sources' numbers of plots a scan, end to end;
-        that of a source with a fixed number is empty
-    count_offsets : int64 (sources + 1,), where each source's distribution begins
-    fixed : int64 (sources, 2), the fixed number of plots of each scan, and that of the batch
-    uniform : int64 (sources,), `BOX`, `VOLUME` or `SECTOR`
-    lower, size : float64 (sources, d), the boxes of the sources of clutter
     """
 
-    position: Array
-    velocity: Array
-    spread: Array
-    begin: Array
-    end: Array
-    scan_time: Array
-    scan_sensor: NDArray[np.int64]
-    scan_number: NDArray[np.int64]
+    time: Array
+    sensor: NDArray[np.int64]
+    number: NDArray[np.int64]
     is_polar: NDArray[np.bool_]
     station: Array
     sigma: Array
     limits: Array
     detection_probability: Array
+
+
+class ClutterSources(NamedTuple):
+    """The sources of clutter.
+
+    Attributes
+    ----------
+    counts : float64, the distribution functions of the sources' numbers of plots a scan, end to end;
+        that of a source with a fixed number is empty
+    offsets : int64 (sources + 1,), where each source's distribution begins
+    fixed : int64 (sources, 2), the fixed number of plots of each scan, and that of the batch
+    uniform : int64 (sources,), `BOX`, `VOLUME` or `SECTOR`
+    lower, size : float64 (sources, d), the boxes
+    """
+
     counts: Array
-    count_offsets: NDArray[np.int64]
+    offsets: NDArray[np.int64]
     fixed: NDArray[np.int64]
     uniform: NDArray[np.int64]
     lower: Array
     size: Array
 
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """A scenario as the drawing kernels take it; d is its number of dimensions, 2 or 3."""
+
+    ground: Ground
+    measurement: Measurement
+    clutter: ClutterSources
+
     @classmethod
     def of(cls, scenario: Scenario) -> World:
         """Return the arrays of a scenario."""
-        axes, targets, sensors = scenario.dimensions, scenario.targets, scenario.sensors
-        lifetimes = np.array([target.lifetime(scenario.interval) for target in targets]).reshape(-1, 2)
-        time, sensor, number = zip(*scenario.timetable, strict=True)
-        clutter = scenario.clutter
-        tables = [
-            poisson_distribution(source.rate) if isinstance(source, PoissonClutter) else np.zeros(0)
-            for source in clutter
-        ]
-        boxes = [scenario.area(source) for source in clutter]
-        lower = _columns([box.lower for box in boxes], axes)
-        return cls(
-            _columns([target.position for target in targets], axes),
-            _columns([target.velocity for target in targets], axes),
-            _columns([target.spread_axes for target in targets], axes),
-            np.ascontiguousarray(lifetimes[:, 0]),
-            np.ascontiguousarray(lifetimes[:, 1]),
-            np.array(time, dtype=float),
-            np.array(sensor, dtype=np.int64),
-            np.array(number, dtype=np.int64),
-            np.array([isinstance(found, PolarSensor) for found in sensors]),
-            _columns([_station(found, axes) for found in sensors], axes),
-            _columns([_sigma(found, axes) for found in sensors], axes),
-            np.array([_limits(found, axes) for found in sensors], dtype=float),
-            np.array([found.detection_probability for found in sensors], dtype=float),
-            np.concatenate(tables) if tables else np.zeros(0),
-            np.cumsum([0, *map(len, tables)], dtype=np.int64),
-            np.array([_fixed_numbers(source) for source in clutter], dtype=np.int64).reshape(-1, 2),
-            np.array([_uniform(source) for source in clutter], dtype=np.int64),
-            lower,
-            _columns([box.upper for box in boxes], axes) - lower,
-        )
+        return cls(_ground(scenario), _measurement(scenario), _clutter_sources(scenario))
+
+
+def _ground(scenario: Scenario) -> Ground:
+    axes, targets = scenario.dimensions, scenario.targets
+    time = np.array([time for time, _, _ in scenario.timetable], dtype=float)
+    displacement = np.full((len(time), len(targets), axes), np.nan)
+    velocity, present = np.full_like(displacement, np.nan), np.zeros((len(time), len(targets)), np.bool_)
+    for index, target in enumerate(targets):
+        there = target.is_present(time, scenario.interval)
+        present[:, index] = there
+        moved, speed = target.course(time[there] - target.lifetime(scenario.interval)[0])
+        displacement[there, index], velocity[there, index] = moved, speed
+    return Ground(
+        _columns([target.position for target in targets], axes),
+        _columns([target.spread_axes for target in targets], axes),
+        displacement,
+        velocity,
+        present,
+    )
+
+
+def _measurement(scenario: Scenario) -> Measurement:
+    axes, sensors = scenario.dimensions, scenario.sensors
+    time, sensor, number = zip(*scenario.timetable, strict=True)
+    return Measurement(
+        np.array(time, dtype=float),
+        np.array(sensor, dtype=np.int64),
+        np.array(number, dtype=np.int64),
+        np.array([isinstance(sensor, PolarSensor) for sensor in sensors]),
+        _columns([_station(sensor, axes) for sensor in sensors], axes),
+        _columns([_sigma(sensor, axes) for sensor in sensors], axes),
+        np.array([_limits(sensor, axes) for sensor in sensors], dtype=float),
+        np.array([sensor.detection_probability for sensor in sensors], dtype=float),
+    )
+
+
+def _clutter_sources(scenario: Scenario) -> ClutterSources:
+    axes, clutter = scenario.dimensions, scenario.clutter
+    tables = [
+        poisson_distribution(source.rate) if isinstance(source, PoissonClutter) else np.zeros(0)
+        for source in clutter
+    ]
+    boxes = [scenario.area(source) for source in clutter]
+    lower = _columns([box.lower for box in boxes], axes)
+    return ClutterSources(
+        np.concatenate(tables) if tables else np.zeros(0),
+        np.cumsum([0, *map(len, tables)], dtype=np.int64),
+        np.array([_fixed_numbers(source) for source in clutter], dtype=np.int64).reshape(-1, 2),
+        np.array([_uniform(source) for source in clutter], dtype=np.int64),
+        lower,
+        _columns([box.upper for box in boxes], axes) - lower,
+    )
 
 
 def _columns(vectors: list[tuple[float, ...]], axes: int) -> Array:

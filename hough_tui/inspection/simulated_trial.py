@@ -19,10 +19,10 @@ def simulated(scenario: Scenario, seed: int, trial: int, stage: Stage = None) ->
         `doppler` and `amplitude`, and `initiate` by `x` and `y`
     """
     if stage is not None or not scenario.is_resolved:
-        return write_plots(plots_of(scenario, seed, trial, stage), scenario)
+        return write_plots(plots_of(scenario, seed, trial, stage))
     resolved = ResolvedWorld.of(scenario)
     points = draw_points(resolved, seed, trial)
-    return write_plots(every_point(resolved, points), scenario, measured_points(resolved, points))
+    return write_plots(every_point(resolved, points), measured_points(resolved, points))
 
 
 def cell_words(scenario: Scenario) -> str:

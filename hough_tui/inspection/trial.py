@@ -19,7 +19,7 @@ from hough_tui.experiments.engines.process_worker import gathered
 from scenarios.entries import InitiatorEntry
 from scenarios.experiments import MatchCriterion
 from scenarios.model import Scenario
-from scenarios.simulate import Draw, true_paths, truth
+from scenarios.simulate import Draw, truth
 from scenarios.sweeps import Stage
 
 MOST_TRACKS = 500
@@ -58,8 +58,8 @@ class Picture:
 
     @property
     def paths(self) -> tuple[NDArray[np.float64], ...]:
-        """The true positions of each target, float64 (scans it is there, 2)."""
-        return true_paths(self.scenario, self.drawn.shift[0])
+        """The true positions of each target, float64 (scans it is there, d)."""
+        return self.drawn.states.paths(0)
 
 
 @dataclass(frozen=True, slots=True)

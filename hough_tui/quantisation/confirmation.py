@@ -68,7 +68,7 @@ def run_trials(scenarios: Sequence[Scenario], grid: Grid, trials: int, seed: int
         for first in range(begin, end, CHUNK):
             count = min(CHUNK, end - first)
             drawn = draw(world, seed, first, count)
-            middle = place + drawn.shift[:, list(lines), :2]
+            middle = place + drawn.states.shift[:, list(lines), :2]
             shifts = np.random.default_rng([seed, first]).random((count, 2))
             own = count_cells(drawn.chunk, grid, theta, middle, shifts, most)
             alone = count_cells(drawn.without_targets().chunk, grid, theta, middle, shifts, most)

@@ -30,7 +30,6 @@ from scenarios.files.csv_tables import (
     read_records,
 )
 from scenarios.files.set_files import read_text
-from scenarios.model import Scenario
 from scenarios.simulate import Draw
 
 FORM = TableForm(
@@ -179,14 +178,13 @@ def _selected(scan: NDArray[np.int64], scans: tuple[int, int], source: str) -> s
     return slice(int(begin), int(end))
 
 
-def write_plots(draw: Draw, scenario: Scenario, further: Mapping[str, Sequence[float]] | None = None) -> str:
+def write_plots(draw: Draw, further: Mapping[str, Sequence[float]] | None = None) -> str:
     """Return the plots of one simulated trial, with their truth, as CSV that reads back bit for bit.
 
     Parameters
     ----------
-    draw : one trial of the scenario
-    scenario : whose targets the plots are of; a plot of clutter has no `target`, `true_x`, `true_y`;
-        in space there are `z` and `true_z`, too, and `amplitude` and `doppler` where plots have them
+    draw : one trial of a scenario; a plot of clutter has no `target`, `true_x`, `true_y`; in space there are
+        `z` and `true_z`, too, and `amplitude` and `doppler` where plots have them
     further : columns to be written before the truth, one value a plot
     """
     if draw.chunk.trials != 1:
@@ -205,10 +203,7 @@ def write_plots(draw: Draw, scenario: Scenario, further: Mapping[str, Sequence[f
     for scan, time, place, origin, beside in rows:
         truth: list[int | float | str] = [""] * (1 + len(axes))
         if origin >= 0:
-            target = scenario.targets[origin]
-            elapsed = time - target.lifetime(scenario.interval)[0]
-            moved = zip(target.position, draw.shift[0, origin].tolist(), target.velocity, strict=True)
-            truth = [origin, *(start + shift + speed * elapsed for start, shift, speed in moved)]
+            truth = [origin, *draw.states.position[0, scan, origin].tolist()]
         writer.writerow([scan, time, *place, *beside, *truth])
     return file.getvalue()
 

@@ -13,7 +13,7 @@ from algorithms.hough.lines import line_distance, line_through
 from algorithms.kinematics.states import with_states
 from algorithms.plots import PlotChunk
 from algorithms.tracks import TrackChunk
-from scenarios.simulate import draw, true_lines
+from scenarios.simulate import draw, truth
 from scenarios.world import World
 
 steady = settings(
@@ -226,7 +226,7 @@ def test_velocities_in_the_course_report_scene(course):
     scenario, entry = course.scenario("two-crossing"), course.entry("standard")
     parameters = entry.parameters.resolved(scenario.context)
     drawn = draw(World.of(scenario), 7, 0, trials)
-    chunk = drawn.chunk
+    chunk, lines = drawn.chunk, truth(scenario, drawn)
     found = entry.algorithm.initiate_chunk(chunk, scenario.context, parameters)
     found = entry.algorithm.associate_chunk(chunk, found, scenario.context, parameters)
     errors, own = [], []
@@ -234,7 +234,7 @@ def test_velocities_in_the_course_report_scene(course):
         tracks = one_trial(chunk, found, trial)
         origin = drawn.origin[chunk.offsets[trial] :]
         for number, (target, *line) in enumerate(
-            zip(scenario.targets, *true_lines(scenario, drawn.shift[trial]), strict=True)
+            zip(scenario.targets, lines.theta[trial], lines.rho[trial], strict=True)
         ):
             angle, distance = line_distance(tracks.theta, tracks.rho, *line)
             matching = np.flatnonzero((angle <= math.radians(6)) & (distance <= 3.0))

@@ -182,9 +182,7 @@ def test_plots_of_clusters_against_the_truth():
     assert set(plots.origin) == {0, 1}
     assert [(plots.origin == target).sum() for target in (0, 1)] == pytest.approx([180, 180], abs=2)
     trial = np.repeat(np.arange(trials), np.diff(chunk.offsets))
-    shift = plots.shift[trial, plots.origin]
-    start = np.array([[-12.0, 30.0], [15.0, 35.0]])[plots.origin] + shift
-    place = start + chunk.time[:, None] * np.array([[0.1, -0.05], [0.02, 0.3]])[plots.origin]
+    place = plots.states.position[trial, chunk.scan, plots.origin]
     error = chunk.position - place
     normal = np.einsum("ni,nij,nj->n", error, np.linalg.inv(chunk.covariance), error)
     # Two degrees of freedom; the error of a beam is even, which scatters less than χ².

@@ -13,7 +13,7 @@ from scenarios.clutter import ExactClutter, PoissonClutter, Region
 from scenarios.experiments import LARGEST_SEED, MOST_TRIALS
 from scenarios.model import Scenario
 from scenarios.sensors import CartesianSensor
-from scenarios.simulate import draw, true_lines, true_paths, truth
+from scenarios.simulate import draw, truth
 from scenarios.targets import Target
 from scenarios.world import World, poisson_distribution
 
@@ -382,8 +382,9 @@ def test_the_truth_of_a_draw():
 
 
 def test_there_are_no_lines_without_targets():
-    theta, rho = true_lines(scene(targets=[]), np.zeros((0, 2)))
-    assert theta.shape == rho.shape == (0,)
+    bare = scene(targets=[])
+    known = truth(bare, drawn(bare, trials=2))
+    assert known.theta.shape == known.rho.shape == (2, 0)
 
 
 SPREAD = Target(position=(40.0, 20.0), velocity=(0.3, 0.18), spread=(2.0, 0.5))
@@ -392,8 +393,8 @@ SPREAD = Target(position=(40.0, 20.0), velocity=(0.3, 0.18), spread=(2.0, 0.5))
 def test_a_target_begins_anywhere_within_its_spread_and_its_truth_goes_with_it():
     scenario = scene(4, sigma=0.0, rates=(), targets=[SPREAD])
     found = drawn(scenario, 3, 0, 4000)
-    shift = found.shift[:, 0]
-    assert found.shift.shape == (4000, 1, 2)
+    shift = found.states.shift[:, 0]
+    assert found.states.shift.shape == (4000, 1, 2)
     assert (np.abs(shift) <= [2.0, 0.5]).all()
     for axis, half in ((0, 2.0), (1, 0.5)):
         assert stats.kstest(shift[:, axis], stats.uniform(-half, 2 * half).cdf).pvalue > 1e-4
@@ -403,7 +404,7 @@ def test_a_target_begins_anywhere_within_its_spread_and_its_truth_goes_with_it()
     along = plots[..., 0] * np.cos(known.theta) + plots[..., 1] * np.sin(known.theta)
     np.testing.assert_allclose(along, np.broadcast_to(known.rho, along.shape), atol=1e-9)
     np.testing.assert_allclose(known.middle[:, 0], plots.mean(axis=1))
-    np.testing.assert_allclose(true_paths(scenario, found.shift[7])[0], plots[7])
+    np.testing.assert_allclose(found.states.paths(7)[0], plots[7])
 
 
 def test_a_spread_changes_nothing_but_where_the_target_is():
@@ -413,7 +414,7 @@ def test_a_spread_changes_nothing_but_where_the_target_is():
     own = one.origin >= 0
     np.testing.assert_array_equal(one.chunk.position[~own], other.chunk.position[~own])
     apart = other.chunk.position[own] - one.chunk.position[own]
-    np.testing.assert_allclose(apart, np.broadcast_to(other.shift[0, 0], apart.shape), atol=1e-12)
+    np.testing.assert_allclose(apart, np.broadcast_to(other.states.shift[0, 0], apart.shape), atol=1e-12)
 
 
 def test_a_fixed_number_of_plots_a_scan_and_a_batch():
@@ -444,7 +445,7 @@ def test_trials_with_fixed_numbers_are_the_same_alone_as_in_a_chunk(seed, first,
     for index in range(trials):
         alone = drawn(scenario, seed, first + index)
         assert_same(part(chunk, index), part(alone, 0))
-        np.testing.assert_array_equal(chunk.shift[index], alone.shift[0])
+        np.testing.assert_array_equal(chunk.states.position[index], alone.states.position[0])
 
 
 def test_clutter_around_the_targets_lies_in_the_box_of_their_paths():

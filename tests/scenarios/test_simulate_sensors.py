@@ -13,7 +13,7 @@ from algorithms.parameters import validated
 from scenarios.conversion import polar
 from scenarios.experiments import MOST_TRIALS
 from scenarios.model import Scenario
-from scenarios.simulate import draw, true_paths, truth
+from scenarios.simulate import draw, truth
 from scenarios.world import World
 
 steady = settings(
@@ -57,7 +57,7 @@ def test_plots_scatter_about_the_true_path_as_their_covariance_says():
     trials = 2000
     found = drawn(scenario(), trials=trials)
     place = found.chunk.position.reshape(trials, 4, 3)
-    path = true_paths(scenario(), np.zeros((1, 3)))[0]
+    path = found.states.paths(0)[0]
     assert path[3] == pytest.approx([0.0, 29250.0, 2440.0])
     miss = (place - path).reshape(-1, 3)
     inverse = np.linalg.inv(found.chunk.covariance)
@@ -196,7 +196,7 @@ def test_cartesian_sensors_in_space():
         scenario(sensor={"sigma": [1, 2, 3]}, region={"x": [-9e3, 9e3], "y": [0, 4e4], "z": [0, 5e3]}),
         trials=3000,
     )
-    path = true_paths(scenario(), np.zeros((1, 3)))[0]
+    path = found.states.paths(0)[0]
     miss = found.chunk.position.reshape(-1, 4, 3) - path
     assert miss.reshape(-1, 3).std(axis=0) == pytest.approx([1.0, 2.0, 3.0], rel=0.04)
     assert found.chunk.covariance is None
