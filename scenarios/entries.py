@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, cast, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol, Union, cast, get_args
 
 from pydantic import Discriminator, Tag, create_model
 
 from algorithms.clustering.parameters import MODES, Clustering
+from algorithms.context import Context
 from algorithms.initiators.base import Initiator
 from algorithms.initiators.registry import initiator, initiators
 from algorithms.parameters import Declared, Name, Parameters, parameter, with_default
+from scenarios.scenes import Scene
 
-if TYPE_CHECKING:
-    from scenarios.model import Scenario
-    from scenarios.scenes import Scene
+
+class HasContext(Protocol):
+    """Scenario, as far as an initiator's entry is concerned with it."""
+
+    @property
+    def context(self) -> Context:
+        """What an initiator knows of the sensor and the batch."""
 
 
 class InitiatorEntry(Declared):
@@ -46,7 +52,7 @@ class InitiatorEntry(Declared):
             **{name: getattr(self, name) for name in declared.model_fields},
         )
 
-    def resolved_on(self, scenario: Scenario) -> Parameters:
+    def resolved_on(self, scenario: HasContext) -> Parameters:
         """Return the parameters with every `auto` worked out for a scenario."""
         return self.parameters.resolved(scenario.context)
 
