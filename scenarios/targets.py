@@ -22,6 +22,9 @@ from algorithms.parameters import (
 )
 from scenarios.sensors import Place
 
+SLACK = 1e-6
+"""Part of an interval by which a scan may miss the time of birth or death: products of times are rounded."""
+
 
 class Extension(Declared):
     """How a target looks to a sensor of high resolution: points, gaussian about its place and speed."""
@@ -100,9 +103,10 @@ class Target(Declared):
         return self.birth * interval, math.inf if self.death is None else self.death * interval
 
     def is_present(self, time: NDArray[np.float64], interval: float) -> NDArray[np.bool_]:
-        """Return whether it is there at times."""
-        begin, end = self.lifetime(interval)
-        return (begin <= time) & (time <= end)
+        """Return whether it is there at times, compared with birth and death on the grid of the interval."""
+        number = time / interval
+        born = number >= self.birth - SLACK
+        return born if self.death is None else born & (number <= self.death + SLACK)
 
     def course(self, elapsed: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return how far it has come and its velocity, float64 (n, d) each, at times since it appeared.

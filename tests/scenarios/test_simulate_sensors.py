@@ -167,6 +167,26 @@ def test_the_control_keeps_the_covariances_of_clutter():
     np.testing.assert_array_equal(control.chunk.covariance, found.chunk.covariance[found.origin < 0])
 
 
+def test_birth_and_death_are_on_the_grid_of_scans():
+    # 3 × 0.1 is more than 0.3 in floating point, 7 × 0.1 more than 0.7.
+    sensor = {"sigma": 0.0}
+    found = scenario(
+        interval=0.1,
+        scans=9,
+        sensor=sensor,
+        further_sensors=[{**sensor, "period": 0.3}, {**sensor, "first_scan": 0.7}],
+        region={"x": [0, 10], "y": [0, 10]},
+        targets=[{"position": [1, 2], "velocity": [1, 0], "birth": 3, "death": 6},
+                 {"position": [1, 2], "velocity": [1, 0], "birth": 7}],
+    )  # fmt: skip
+    plots, origin = drawn(found).chunk, drawn(found).origin
+    times = {target: sorted(np.round(plots.time[origin == target], 6).tolist()) for target in (0, 1)}
+    assert times[0] == [0.3, 0.3, 0.4, 0.5, 0.6, 0.6]
+    every_interval, slow = [0.7, 0.8], [0.9, 1.2, 1.5, 1.8, 2.1, 2.4]
+    late = [0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5]
+    assert times[1] == sorted([*every_interval, *slow, *late])
+
+
 def test_truth_in_space_has_the_lines_of_the_plane():
     climbing = {"position": [0, 20000, 1000], "velocity": [0, 0, 30]}
     found = drawn(scenario(targets=[LANDING, climbing]), trials=2)
