@@ -18,6 +18,7 @@ from hough_tui.cli.plots import initiate, simulate
 from hough_tui.cli.process import refuse, reported
 from hough_tui.cli.results import results_app
 from hough_tui.cli.runs import batch, reproduce
+from hough_tui.ending import watched
 
 app = typer.Typer(
     name="hough-tui",
@@ -66,10 +67,10 @@ def open_application(
         known = [*bundled_paths(), *(command for command in commands() if command != "open")]
         refuse(True, unknown(name, known, "file, bundled set or command"))
     require_terminal()
-    from hough_tui.ui.app import run
+    from hough_tui.ui.app import run as run_application
     from hough_tui.ui.interpreter import leave
 
-    leave(run(name))
+    leave(run_application(name))
 
 
 # As `--help` lists them.
@@ -88,8 +89,13 @@ def commands() -> list[str]:
 
 
 def main() -> None:
-    """Run the command line: without a command, the application is opened, on a set where one is named."""
-    arguments = sys.argv[1:]
+    """Run the command line of this process, and see to it that it ends when it is asked to."""
+    with watched():
+        run(sys.argv[1:])
+
+
+def run(arguments: list[str]) -> None:
+    """Run a command line: without a command, the application is opened, on a set where one is named."""
     if not arguments or not (arguments[0].startswith("-") or arguments[0] in commands()):
         arguments = ["open", *arguments]
     app(arguments)

@@ -5,17 +5,21 @@ from __future__ import annotations
 import contextlib
 import functools
 import os
-import signal
 import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import typer
 
+from hough_tui.ending import INTERRUPTED, WORDS, requested_status
+
 if TYPE_CHECKING:
     from hough_tui.experiments.engines.threads import Job
 
-WRONG_REQUEST, FAILED, INTERRUPTED = 2, 1, 130
+WRONG_REQUEST, FAILED = 2, 1
+
+STAGE_SECONDS = 0.4
+"""The longest that the end of a run waits for the trials that are under way."""
 
 
 def reported(command: Callable[..., None]) -> Callable[..., None]:
@@ -34,8 +38,8 @@ def reported(command: Callable[..., None]) -> Callable[..., None]:
             stop(str(error), WRONG_REQUEST)
         except WorkFailedError as error:
             stop(str(error), FAILED)
-        except KeyboardInterrupt as error:
-            stop("interrupted", getattr(error, "status", INTERRUPTED))
+        except KeyboardInterrupt:
+            stop(WORDS[INTERRUPTED], INTERRUPTED)
         except BrokenPipeError:
             # Who reads the output has closed it; the interpreter must not stumble over it again.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -49,8 +53,9 @@ def reported(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def stop(message: str, status: int) -> None:
-    """Say on standard error why the command ends, and end it."""
-    tell(message)
+    """Say on standard error why the command ends, and end it; what was asked to end says so itself."""
+    if requested_status() is None:
+        tell(message)
     raise typer.Exit(status)
 
 
@@ -82,21 +87,10 @@ def announce_compilation() -> None:
         tell("compiling the kernels" + (", once for this version" if can_keep() else "") + ": up to a minute")
 
 
-class EndedError(KeyboardInterrupt):
-    """The process was asked to end, or has lost its terminal."""
-
-    def __init__(self, number: int, _: object) -> None:
-        super().__init__()
-        self.status = 128 + number
-        raise self
-
-
 def finish(job: Job, description: str) -> None:
     """Wait for a job with a progress bar on standard error; end it in order where the process must end."""
     progress = job.progress
     try:
-        for number in (signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, EndedError)
         # The job is at work already: whatever interrupts from here on must end it.
         from hough_tui.reports.progress import ProgressBar
 
@@ -110,7 +104,7 @@ def finish(job: Job, description: str) -> None:
                 )
     except KeyboardInterrupt:
         job.cancel()
-        # What a worker fails with while everything is being ended is no news.
+        # What a worker fails with while everything is being ended is no news; one in a long kernel goes on.
         with contextlib.suppress(Exception):
-            job.wait()
+            job.wait(STAGE_SECONDS)
         raise

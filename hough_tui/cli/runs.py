@@ -18,6 +18,10 @@ from hough_tui.cli.options import (
 )
 from hough_tui.cli.output import is_coloured, output_width, print_renderables
 from hough_tui.cli.process import FAILED, announce_compilation, counted, finish, refuse, reported, tell
+from hough_tui.ending import extend
+
+KEEPING_SECONDS = 10.0
+"""The longest that keeping the finished trials of an ended run may take; a second interrupt drops them."""
 
 
 @reported
@@ -58,7 +62,8 @@ def batch(
     try:
         finish(job, ", ".join(sets))
     except KeyboardInterrupt:
-        if keep and job.rows():
+        if keep and job.progress.done.any():
+            extend(KEEPING_SECONDS)
             keep_run(result(job))
         raise
     run = result(job)

@@ -1,12 +1,11 @@
 """The command line in this process."""
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from hough_tui.cli import main
+from hough_tui.cli import run as run_command
 
 Cli = Callable[..., tuple[int, str, str]]
 
@@ -16,9 +15,8 @@ def cli(data_home: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
     """Run a command; return its exit status, what it printed and what it said, but of compilations."""
 
     def run(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["hough-tui", *map(str, arguments)])
         with pytest.raises(SystemExit) as ended:
-            main()
+            run_command([*map(str, arguments)])
         out, err = capsys.readouterr()
         said = [line for line in err.splitlines(True) if not line.startswith("hough-tui: compiling")]
         return ended.value.code or 0, out, "".join(said)

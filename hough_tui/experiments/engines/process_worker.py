@@ -75,19 +75,21 @@ def _end_with_parent() -> None:
 
 
 def gathered(trials: list[Tracks]) -> TrackChunk:
-    """Return the tracks of several trials as one chunk."""
+    """Return the tracks of several trials, or of none, as one chunk."""
     offsets = np.cumsum([0, *map(len, trials)], dtype=np.int64)
     every = [rows for tracks in trials for rows in tracks.plots]
     plots = np.full((len(every), max(map(len, every), default=1)), -1, np.int64)
     for line, rows in zip(plots, every, strict=True):
         line[: len(rows)] = rows
+    nothing, no_scan = np.empty(0), np.empty(0, np.int64)
+    states = [tracks.states for tracks in trials] or [TrackStates.open(0, 2)]
     return TrackChunk(
         offsets,
-        np.concatenate([tracks.theta for tracks in trials]),
-        np.concatenate([tracks.rho for tracks in trials]),
-        np.concatenate([tracks.score for tracks in trials]),
+        np.concatenate([nothing, *(tracks.theta for tracks in trials)]),
+        np.concatenate([nothing, *(tracks.rho for tracks in trials)]),
+        np.concatenate([nothing, *(tracks.score for tracks in trials)]),
         np.zeros(len(trials), np.int64),
         plots,
-        confirmed_scan=np.concatenate([tracks.confirmed_scan for tracks in trials]),
-        states=TrackStates(*map(np.concatenate, zip(*(tracks.states for tracks in trials), strict=True))),
+        confirmed_scan=np.concatenate([no_scan, *(tracks.confirmed_scan for tracks in trials)]),
+        states=TrackStates(*map(np.concatenate, zip(*states, strict=True))),
     )

@@ -145,10 +145,13 @@ class Job:
             raise
 
     def _warm(self) -> None:
-        """Load, or compile, the kernels that the plan needs, so that no trial is charged for it."""
+        """Load, or compile, the kernels that the plan needs, so that no trial is charged for it.
+
+        No trial at all is done: of some plans a single one takes minutes.
+        """
         while self._cold and not self._cancelled.is_set():
             shared = self._cold.pop()
-            for _ in shared.run(shared.prepared(), 0, 1, self._run_in_process):
+            for _ in shared.run(shared.prepared(), 0, 0, self._run_in_process):
                 continue
 
     def _run(self, index: int, first: int, trials: int) -> None:

@@ -1,11 +1,10 @@
 """Wrong requests: each is one message, exit status 2, nothing printed and nothing written."""
 
 import re
-import sys
 
 import pytest
 
-from hough_tui.cli import main
+from hough_tui.cli import run as run_command
 
 SET = """\
 schema: 1
@@ -47,9 +46,8 @@ def ending(data_home, tmp_path, monkeypatch, capsys):
 
     def run(*arguments: object) -> str:
         before = tree(tmp_path)
-        monkeypatch.setattr(sys, "argv", ["hough-tui", *map(str, arguments)])
         with pytest.raises(SystemExit) as ended:
-            main()
+            run_command([*map(str, arguments)])
         out, err = capsys.readouterr()
         assert ended.value.code == 2, err
         assert out == ""
@@ -178,9 +176,8 @@ def test_a_wrong_field_is_named_with_its_place(refusal, write, given, instead, w
 def test_the_set_of_these_tests_is_right(write, data_home, monkeypatch, capsys, tmp_path):
     monkeypatch.chdir(tmp_path)
     write("small.yaml", SET)
-    monkeypatch.setattr(sys, "argv", ["hough-tui", "validate", "small.yaml"])
     with pytest.raises(SystemExit) as ended:
-        main()
+        run_command(["validate", "small.yaml"])
     assert ended.value.code == 0
     assert capsys.readouterr().out == "small.yaml: valid: 1 scenario, 1 initiator, 1 experiment\n"
 

@@ -2,14 +2,13 @@
 
 import copy
 import json
-import sys
 from pathlib import Path
 
 import pytest
 from pydantic import BaseModel
 
 from algorithms.initiators.registry import initiators
-from hough_tui.cli import main
+from hough_tui.cli import run as run_command
 from hough_tui.published.comparison import TABLES
 from scenarios.files.bundled import bundled_paths
 from scenarios.files.marked_yaml import read
@@ -24,9 +23,8 @@ def cli(data_home, monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "600")  # so that no cell is broken over lines
 
     def run(*arguments: object) -> str:
-        monkeypatch.setattr(sys, "argv", ["hough-tui", *map(str, arguments)])
         with pytest.raises(SystemExit) as ended:
-            main()
+            run_command([*map(str, arguments)])
         out, err = capsys.readouterr()
         assert not ended.value.code, err
         assert "\x1b" not in out
@@ -70,9 +68,8 @@ def test_validate_counts_what_a_set_has(cli):
 def test_validate_tells_the_wrong_and_the_right(monkeypatch, capsys, tmp_path):
     path = tmp_path / "wrong.yaml"
     path.write_text("schema: 1\n")
-    monkeypatch.setattr(sys, "argv", ["hough-tui", "validate", str(path), "course-text"])
     with pytest.raises(SystemExit) as ended:
-        main()
+        run_command(["validate", str(path), "course-text"])
     out, err = capsys.readouterr()
     assert ended.value.code == 2
     assert out.startswith("course-text: valid")
