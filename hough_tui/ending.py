@@ -20,6 +20,8 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import IO, Any
 
+from hough_tui.streams import reserve_descriptors
+
 HUNG_UP, INTERRUPTED, TERMINATED = 128 + signal.SIGHUP, 128 + signal.SIGINT, 128 + signal.SIGTERM
 
 WORDS = {HUNG_UP: "hung up", INTERRUPTED: "interrupted", TERMINATED: "terminated"}
@@ -183,6 +185,7 @@ def watched() -> Iterator[None]:
     """Watch over the end of the process while its command runs, and from then on."""
     global _watch
     if _watch is None:
+        reserve_descriptors()
         _watch = EndingWatch()
         _watch.begin()
     try:

@@ -5,20 +5,28 @@ Heavy modules are imported inside the commands, so that `--help` answers at once
 
 from __future__ import annotations
 
+import contextlib
 import sys
+import warnings
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from hough_tui import streams
 from hough_tui.cli.advise import advise
 from hough_tui.cli.cluster import cluster
 from hough_tui.cli.listings import initiators, schema, sets, validate
+from hough_tui.cli.output import print_line
 from hough_tui.cli.plots import initiate, simulate
-from hough_tui.cli.process import refuse, reported
+from hough_tui.cli.process import WRONG_REQUEST, failed, refuse, reported
 from hough_tui.cli.results import results_app
 from hough_tui.cli.runs import batch, reproduce
 from hough_tui.ending import watched
+from hough_tui.reports.visible import visible
+
+UsageError: Any = typer.BadParameter.__base__
+"""A wrong command line; typer exports this one kind of it only."""
 
 app = typer.Typer(
     name="hough-tui",
@@ -34,7 +42,7 @@ def print_version(asked: bool) -> None:
     if asked:
         from hough_tui import __version__
 
-        print(f"hough-tui {__version__}")
+        print_line(f"hough-tui {__version__}")
         raise typer.Exit
 
 
@@ -96,6 +104,38 @@ def main() -> None:
 
 def run(arguments: list[str]) -> None:
     """Run a command line: without a command, the application is opened, on a set where one is named."""
+    streams.prepare()
+    silence_libraries()
     if not arguments or not (arguments[0].startswith("-") or arguments[0] in commands()):
         arguments = ["open", *arguments]
-    app(arguments)
+    try:
+        status = status_of(arguments)
+    finally:
+        lost = streams.settle()
+    if lost is not None and status == 0:
+        status = failed(lost)
+        streams.settle()
+    sys.exit(status)
+
+
+def status_of(arguments: list[str]) -> int:
+    """Run a command and return its exit status."""
+    try:
+        return app(arguments, standalone_mode=False) or 0
+    except UsageError as error:
+        from typer.rich_utils import rich_format_error
+
+        error.message = visible(error.message)
+        # Where nobody can be told, the status still says that the request was wrong.
+        with contextlib.suppress(OSError):
+            rich_format_error(error)
+        return WRONG_REQUEST
+    except OSError as error:
+        # A command has reported its own errors: this is help or the version, which could not be written.
+        return failed(streams.named(error))
+
+
+def silence_libraries() -> None:
+    """Keep warnings of libraries from the user, unless Python itself was asked for them."""
+    if not sys.warnoptions:
+        warnings.showwarning = lambda *_, **__: None

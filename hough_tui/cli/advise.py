@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Annotated
 
 import typer
 
 from hough_tui.cli.options import JsonOption, SetOption
-from hough_tui.cli.output import output_width, print_renderables
+from hough_tui.cli.output import output_width, print_renderables, write_document
 from hough_tui.cli.process import announce_compilation, refuse, reported, tell
 
 
@@ -101,6 +100,6 @@ def advise(
         for note in adoption.notes:
             tell(note)
     if as_json:
-        sys.stdout.write(json_text(told))
+        write_document(json_text(told))
         return
     print_renderables(*advice_tables(told, output_width(), with_map))

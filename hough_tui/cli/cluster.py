@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -10,7 +9,13 @@ from typing import Annotated, Any
 import typer
 
 from hough_tui.cli.options import JsonOption, SetOption
-from hough_tui.cli.output import is_coloured, output_width, print_renderables
+from hough_tui.cli.output import (
+    is_coloured,
+    output_width,
+    print_picture,
+    print_renderables,
+    write_document,
+)
 from hough_tui.cli.process import announce_compilation, refuse, reported, tell
 
 
@@ -90,11 +95,11 @@ def cluster(
     if csv is not None:
         text = csv_text(plot_rows(told))
         if printed:
-            sys.stdout.write(text)
+            write_document(text)
             return
         replace_file(Path(csv), text)
     if as_json:
-        sys.stdout.write(json_text(told))
+        write_document(json_text(told))
         return
     print_renderables(cluster_table(told, output_width()))
     place = recording.place(recording.fullest)
@@ -119,4 +124,5 @@ def print_plane(found: Any) -> None:
     from hough_tui.reports.charts import cluster_chart
 
     shown = found.recording.fullest
-    print(cluster_chart(found.clusters, shown, found.radius, min(output_width(), 120), 36, is_coloured()))
+    width = min(output_width(), 120)
+    print_picture(cluster_chart(found.clusters, shown, found.radius, width, 36, is_coloured()))

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from typing import Annotated, Any
 
 import typer
 
 from hough_tui.cli.options import JsonOption
-from hough_tui.cli.output import output_width, print_renderables
+from hough_tui.cli.output import output_width, print_line, print_renderables, write_document
 from hough_tui.cli.process import counted, refuse, reported
 
 
@@ -25,13 +24,11 @@ def sets(
 
     if name is not None:
         refuse(as_json, "--json lists the sets: leave out the name")
-        sys.stdout.write(read_text(locate(name)))
+        write_document(read_text(locate(name)))
         return
     known = bundled_sets()
     if as_json:
-        sys.stdout.write(
-            json_text([{"name": found.name, "description": found.description} for found in known])
-        )
+        write_document(json_text([{"name": found.name, "description": found.description} for found in known]))
         return
     entries = [(found.name, found.description) for found in known]
     print_renderables(listing("bundled scenario sets", entries, output_width()))
@@ -54,7 +51,7 @@ def initiators(
     chosen = [initiator(name)] if name else list(known().values())
     told = [declaration(found) for found in chosen]
     if as_json:
-        sys.stdout.write(json_text(told[0] if name else told))
+        write_document(json_text(told[0] if name else told))
     elif name:
         entries = [(found["name"], described(found)) for found in told[0]["parameters"]]
         title = f"{name}: {told[0]['summary']}"
@@ -96,7 +93,7 @@ def validate(
             always = {"scenario", "initiator", "experiment"} if found.scenarios else {"scene", "experiment"}
             told = [(part, len(listed)) for part, listed in parts.items() if listed or part in always]
             counts = ", ".join(counted(number, part) for part, number in told)
-            print(f"{name}: valid: {counts}")
+            print_line(f"{name}: valid: {counts}")
     if wrong:
         raise RequestError("\n".join(wrong))
 
@@ -108,4 +105,4 @@ def schema() -> None:
     from scenarios.model import ScenarioSet
 
     document = {"$schema": "https://json-schema.org/draft/2020-12/schema", **ScenarioSet.model_json_schema()}
-    sys.stdout.write(json_text(document))
+    write_document(json_text(document))

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from hough_tui.cli.options import JsonOption, SeedOption, SetArgument, SetOption
-from hough_tui.cli.output import is_coloured, output_width, print_renderables
+from hough_tui.cli.output import (
+    is_coloured,
+    output_width,
+    print_picture,
+    print_renderables,
+    write_document,
+)
 from hough_tui.cli.process import announce_compilation, refuse, reported, tell
 
 
@@ -87,7 +92,7 @@ def initiate(
         tell(note)
     document = initiation.document(found)
     if as_json:
-        sys.stdout.write(json_text(document))
+        write_document(json_text(document))
         return
     from hough_tui.reports.tables import track_table
 
@@ -107,7 +112,8 @@ def print_plane(found: Any) -> None:
     ]
     limits = region and ((region.lower[0], region.upper[0]), (region.lower[1], region.upper[1]))
     unit, width = found.context.unit.value, min(output_width(), 120)
-    print(plane_chart(place[:, 0], place[:, 1], plots.scan, lines, limits, unit, width, 36, is_coloured()))
+    x, y = place[:, 0], place[:, 1]
+    print_picture(plane_chart(x, y, plots.scan, lines, limits, unit, width, 36, is_coloured()))
 
 
 @reported
@@ -146,6 +152,6 @@ def simulate(
     if chosen.is_resolved and stage is None:
         tell(cell_words(chosen))
     if output is None:
-        sys.stdout.write(text)
+        write_document(text)
     else:
         replace_file(output, text)

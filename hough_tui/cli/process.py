@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import os
 import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from hough_tui.ending import INTERRUPTED, WORDS, requested_status
+from hough_tui.reports.visible import visible
+from hough_tui.streams import naming_output
 
 if TYPE_CHECKING:
     from hough_tui.experiments.engines.threads import Job
@@ -33,19 +34,16 @@ def reported(command: Callable[..., None]) -> Callable[..., None]:
         listen(tell)
         try:
             command(*args, **kwargs)
-            sys.stdout.flush()
+            with naming_output():
+                sys.stdout.flush()
         except RequestError as error:
             stop(str(error), WRONG_REQUEST)
         except WorkFailedError as error:
             stop(str(error), FAILED)
         except KeyboardInterrupt:
             stop(WORDS[INTERRUPTED], INTERRUPTED)
-        except BrokenPipeError:
-            # Who reads the output has closed it; the interpreter must not stumble over it again.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            raise typer.Exit(FAILED) from None
         except OSError as error:
-            stop(f"{error.filename or 'the system'}: {error.strerror or error}", FAILED)
+            raise typer.Exit(failed(error)) from None
         except MemoryError:
             stop("there is not enough memory for this; give a smaller grid, or fewer scans or trials", FAILED)
 
@@ -59,6 +57,14 @@ def stop(message: str, status: int) -> None:
     raise typer.Exit(status)
 
 
+def failed(error: OSError) -> int:
+    """Say what the system refused, and return the exit status."""
+    # A reader that leaves has enough of the output: that is no news.
+    if not isinstance(error, BrokenPipeError):
+        tell(f"{error.filename or 'the system'}: {error.strerror or error}")
+    return FAILED
+
+
 def counted(number: int, what: str) -> str:
     """Return a number of things, in words."""
     return f"{number:,} {what}" + ("" if number == 1 else "s")
@@ -68,7 +74,7 @@ def tell(message: str) -> None:
     """Say something on standard error."""
     # A terminal that has gone away must not keep the work from being ended in order.
     with contextlib.suppress(OSError):
-        print(f"hough-tui: {message}", file=sys.stderr, flush=True)
+        print(f"hough-tui: {visible(message)}", file=sys.stderr, flush=True)
 
 
 def refuse(condition: bool, message: str) -> None:

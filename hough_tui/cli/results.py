@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from hough_tui.cli.options import ComparedMetric, JsonOption, MetricOption
-from hough_tui.cli.output import output_width, print_renderables
+from hough_tui.cli.output import output_width, print_renderables, write_document
 from hough_tui.cli.process import refuse, reported, tell
 from hough_tui.cli.runs import print_rates
 
@@ -28,7 +27,7 @@ def list_results(as_json: JsonOption = False) -> None:
 
     names = FolderStore().names()
     if as_json:
-        sys.stdout.write(json_text(names))
+        write_document(json_text(names))
     elif names:
         store = FolderStore()
         documents = [(name, store.document(name)) for name in names]
@@ -58,7 +57,7 @@ def show_result(
 
     document = FolderStore().document(name)
     if as_json:
-        sys.stdout.write(json_text(document))
+        write_document(json_text(document))
     else:
         print_rates(document["rows"], metric, plot)
 
@@ -92,7 +91,7 @@ def compare_results(
     key = metric.value if metric is not None else leading_metric(rows[0] if rows else {})
     comparison = compare(runs, key)
     if as_json:
-        sys.stdout.write(json_text(comparison_document(comparison)))
+        write_document(json_text(comparison_document(comparison)))
     else:
         print_renderables(sheet_table(comparison_sheet(comparison), output_width()))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,7 +15,14 @@ from hough_tui.cli.options import (
     TrialsOption,
     WorkersOption,
 )
-from hough_tui.cli.output import is_coloured, output_width, print_renderables
+from hough_tui.cli.output import (
+    is_coloured,
+    output_width,
+    print_line,
+    print_picture,
+    print_renderables,
+    write_document,
+)
 from hough_tui.cli.process import FAILED, announce_compilation, counted, finish, refuse, reported, tell
 from hough_tui.ending import extend
 
@@ -69,9 +75,9 @@ def batch(
     run = result(job)
     status = keep_run(run) if keep else 0
     if as_json:
-        sys.stdout.write(json_text(run.document))
+        write_document(json_text(run.document))
     elif str(csv) == "-":
-        sys.stdout.write(csv_text(run.document["rows"]))
+        write_document(csv_text(run.document["rows"]))
     else:
         print_rates(run.document["rows"], metric, plot)
     if csv is not None and str(csv) != "-":
@@ -115,10 +121,10 @@ def print_rates(rows: list[dict[str, Any]], metric: Metric | None, with_charts: 
     if not with_charts:
         return
     for (_, name), group in groupby(rows, key=lambda row: (row["set"], row["experiment"])):
-        print(f"\n{name}")
+        print_line(f"\n{name}")
         found = list(group)
         chosen = metric.value if metric is not None else leading_metric(found[0])
-        print(rate_chart(found, chosen, min(width, 120), 22, is_coloured()))
+        print_picture(rate_chart(found, chosen, min(width, 120), 22, is_coloured()))
 
 
 @reported
@@ -146,6 +152,6 @@ def reproduce(
         finish(job, chosen.name)
         documents.append(compare(chosen, job))
     if as_json:
-        sys.stdout.write(json_text(documents[0] if table else {"tables": documents}))
+        write_document(json_text(documents[0] if table else {"tables": documents}))
         return
     print_renderables(*(published_table(document, output_width()) for document in documents))

@@ -15,6 +15,7 @@ import numpy as np
 from algorithms.tracks import Tracks
 from hough_tui.reports.layout import Column, Sheet
 from hough_tui.reports.rates import rate_sheets
+from hough_tui.reports.visible import ACTING
 
 Row = Mapping[str, Any]
 
@@ -84,11 +85,15 @@ def sheet_markdown(sheet: Sheet) -> str:
 def json_text(document: object) -> str:
     """Return a document as JSON that any reader takes: NaN and infinities become null.
 
+    Characters that act on a terminal, and lone surrogates, are written as JSON's own escapes.
+
     Parameters
     ----------
     document : of mappings, sequences, texts and numbers, those of numpy among them
     """
-    return _written(_plain(document), 0) + "\n"
+    text = _written(_plain(document), 0)
+    # Outside of JSON's texts there is nothing but ASCII: what acts on a terminal stands within one.
+    return ACTING.sub(lambda match: f"\\u{ord(match[0]):04x}", text) + "\n"
 
 
 FORMATS: dict[str, tuple[str, Callable[[Mapping[str, Any]], str]]] = {

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import re
+import sys
 import textwrap
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rich import box
 from rich.cells import cell_len
 from rich.table import Table
 from rich.text import Text
+
+from hough_tui.reports.look_alikes import spelled
+from hough_tui.reports.visible import visible, visible_line
 
 GAP = 2
 COMFORTABLE_PROSE = 16
@@ -50,6 +54,11 @@ class Column:
     called: str = ""
     styles: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        # What is shown is measured: characters that act are escapes before any width is worked out.
+        object.__setattr__(self, "heading", visible(self.heading))
+        object.__setattr__(self, "cells", tuple(map(visible_line, self.cells)))
+
     @property
     def name(self) -> str:
         """The heading in one line."""
@@ -82,6 +91,11 @@ class Sheet:
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "title", visible_line(self.title))
+        object.__setattr__(self, "notes", tuple(map(visible, self.notes)))
+        object.__setattr__(self, "warnings", tuple(map(visible, self.warnings)))
+
 
 def sheet_table(sheet: Sheet, width: int) -> Table:
     """Return the table of a sheet, with the columns that the width has room for.
@@ -91,6 +105,7 @@ def sheet_table(sheet: Sheet, width: int) -> Table:
     sheet : what to show
     width : of the terminal, in cells
     """
+    sheet = _encodable(sheet, sys.stdout.encoding)
     shown, left_out = chosen(sheet.columns, width)
     widths = _widths(shown, width)
     notes = list(sheet.notes)
@@ -125,6 +140,21 @@ def sheet_table(sheet: Sheet, width: int) -> Table:
     for cells in zip(*columns, strict=True):
         table.add_row(*cells)
     return table
+
+
+def _encodable(sheet: Sheet, encoding: str) -> Sheet:
+    """Return a sheet in the characters of an encoding."""
+    columns = tuple(
+        replace(
+            column,
+            heading=spelled(column.heading, encoding),
+            cells=tuple(spelled(cell, encoding) for cell in column.cells),
+            called=spelled(column.called, encoding),
+        )
+        for column in sheet.columns
+    )
+    sentences = [tuple(spelled(text, encoding) for text in texts) for texts in (sheet.notes, sheet.warnings)]
+    return Sheet(spelled(sheet.title, encoding), columns, *sentences)
 
 
 def chosen(columns: Sequence[Column], width: int) -> tuple[list[Column], list[Column]]:

@@ -11,6 +11,8 @@ from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn,
 from rich.table import Column
 from rich.text import Text
 
+from hough_tui.reports.visible import visible_line
+
 ROOM_FOR_CELLS = 80
 ROOM_FOR_SPEED = 100
 
@@ -48,7 +50,7 @@ class ProgressBar:
             redirect_stdout=False,
             expand=True,
         )
-        self._progress.add_task(self._description, total=None, cells="")
+        self._progress.add_task(visible_line(self._description), total=None, cells="")
         self._progress.start()
         return self
 

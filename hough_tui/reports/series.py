@@ -11,6 +11,7 @@ from typing import Any
 from hough_tui.reports.metrics import PARTS, field_name
 from hough_tui.reports.metrics import metric as metric_called
 from hough_tui.reports.numerals import Pair, as_given, number, pair
+from hough_tui.reports.visible import visible_line
 
 Row = Mapping[str, Any]
 
@@ -100,7 +101,7 @@ def rate_series(rows: Sequence[Row], metric: str) -> ChartData:
         ends = tuple(_interval(row, known.interval, factor) for row in part)
         series.append(Series(label, MARKERS[index % len(MARKERS)], x, y, ends))
     written = [_place(value, is_wide) for value in values], [as_given(value) for value in values]
-    named = field_name(key) + (" (logarithmic)" if is_wide else "")
+    named = visible_line(field_name(key)) + (" (logarithmic)" if is_wide else "")
     return ChartData(known.label, known.share, named, written, tuple(series))
 
 
@@ -141,4 +142,5 @@ def _labels(rows: Sequence[Row], key: str) -> list[str]:
     ]
     names = dict.fromkeys(name for part in parts for name in part)
     several = [name for name in names if len({part.get(name) for part in parts}) > 1]
-    return [", ".join(filter(None, (part.get(name, "") for name in several))) for part in parts]
+    labels = [", ".join(filter(None, (part.get(name, "") for name in several))) for part in parts]
+    return [visible_line(label) for label in labels]

@@ -17,7 +17,7 @@ def replace_file(path: Path, content: str | bytes) -> None:
     OSError
         Where the file cannot be written, with its name; the old file is untouched.
     """
-    data = content.encode() if isinstance(content, str) else content
+    data = content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content
     try:
         if path.exists() and not path.is_file():
             path.write_bytes(data)
