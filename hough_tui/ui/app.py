@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from textual import on, work
 from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
+from textual.filter import LineFilter
 from textual.screen import Screen
 from textual.worker import Worker, WorkerState
 
 from hough_tui.ui import interpreter
 from hough_tui.ui.config import Config
+from hough_tui.ui.drawing.safe_text import Gate, show_what_acts
 from hough_tui.ui.messages import (
     ElementAdded,
     ElementRemoved,
@@ -67,6 +69,8 @@ class HoughApp(App[None]):
 
     def __init__(self, set_name: str | None, config: Config) -> None:
         super().__init__()
+        show_what_acts()
+        self._gate = Gate()
         self._set_name, self._config = set_name, config
         self.workspace: Workspace | None = None
         self.wrong_setting: RequestError | None = None
@@ -78,6 +82,10 @@ class HoughApp(App[None]):
     def get_default_screen(self) -> Screen[Any]:
         """Return the main screen: its frame is painted before anything heavy is loaded."""
         return self._main
+
+    def get_line_filters(self) -> Sequence[LineFilter]:
+        """Return what every line passes on its way to the terminal."""
+        return [*super().get_line_filters(), self._gate]
 
     def on_mount(self) -> None:
         """Apply the settings, and begin to load what is heavy once the frame is painted."""
@@ -494,8 +502,10 @@ def run(set_name: str | None) -> int:
         Where the settings are wrong.
     """
     from hough_tui.ui.config import read_config
+    from hough_tui.ui.terminal import draw_in_any_encoding
 
     interpreter.prepare()
+    draw_in_any_encoding()
     app = HoughApp(set_name, read_config())
     app.run()
     if app.wrong_setting is not None:

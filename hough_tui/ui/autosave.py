@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -90,7 +91,7 @@ def put_back(kept: Unsaved) -> None:
 
 def aside_file(name: str, path: Path | None) -> Path:
     """Return where a set is kept aside; each file has its own place."""
-    key = hashlib.sha256(str(path.resolve() if path else "").encode()).hexdigest()[:10]
+    key = hashlib.sha256(os.fsencode(path.resolve() if path else "")).hexdigest()[:10]
     return state_directory() / "unsaved" / f"{name}-{key}.json"
 
 

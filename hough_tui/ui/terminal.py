@@ -6,8 +6,10 @@ import asyncio
 import signal
 import sys
 from collections.abc import Callable
+from io import TextIOWrapper
 
 from algorithms.errors import RequestError
+from hough_tui.reports.look_alikes import CELLS
 
 ENDING_SIGNALS = (signal.SIGTERM, signal.SIGHUP)
 
@@ -18,12 +20,21 @@ def require_terminal() -> None:
     Raises
     ------
     RequestError
-        Where standard input or output is no terminal.
+        Where standard input, output or error is no terminal.
     """
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         raise RequestError(
             "the application needs a terminal, and there is none here; `hough-tui batch` runs without one"
         )
+    # Textual draws on it, so that standard output stays free.
+    if not sys.stderr.isatty():
+        raise RequestError("the application draws on standard error, and that is no terminal here")
+
+
+def draw_in_any_encoding() -> None:
+    """Have characters that the terminal's encoding lacks replaced by such as take the same room."""
+    if isinstance(sys.__stderr__, TextIOWrapper):
+        sys.__stderr__.reconfigure(errors=CELLS)
 
 
 def on_ending_signals(act: Callable[[int], None]) -> None:

@@ -7,8 +7,7 @@ from collections.abc import Iterable
 from rich.segment import Segment
 from textual.strip import Strip
 
-UPPER_DOTS, LOWER_DOTS = 0b00011011, 0b11100100
-"""Bits of a braille character's dots in its upper and in its lower half."""
+from hough_tui.reports.look_alikes import BRAILLE
 
 SIGNS = {
     "×": "x", "◇": "♦", "◆": "♦", "●": "•", "□": "■", "▪": "■", "△": "▲", "▽": "▼", "◉": "◘", "╌": "-",
@@ -17,14 +16,7 @@ SIGNS = {
 """What stands for signs that are not among the 256 characters of code page 437."""
 
 
-def _table() -> dict[int, str]:
-    dots = {
-        0x2800 + bits: " '.:"[bool(bits & UPPER_DOTS) + 2 * bool(bits & LOWER_DOTS)] for bits in range(256)
-    }
-    return dots | str.maketrans(SIGNS)
-
-
-TABLE = _table()
+TABLE = BRAILLE | str.maketrans(SIGNS)
 
 
 def for_console(lines: Iterable[Strip]) -> list[Strip]:

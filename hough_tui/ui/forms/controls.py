@@ -11,6 +11,7 @@ from textual.reactive import reactive
 from textual.widget import Widget
 from textual.widgets import Input, Select
 
+from hough_tui.reports.visible import visible_in_place
 from hough_tui.ui.forms.fields import FieldDescription
 from hough_tui.ui.forms.texts import NO, YES
 
@@ -22,7 +23,15 @@ class ExplanationWanted(Message):
     """Someone asks what a field is."""
 
 
-class NumberInput(Input):
+class LineInput(Input):
+    """A line of text, in which a character that acts on a terminal is a picture in its own place."""
+
+    @property
+    def _value(self) -> Text:
+        return Text(visible_in_place(self.value), no_wrap=True, overflow="ignore", end="")
+
+
+class NumberInput(LineInput):
     """A line of text for numbers.
 
     It is no input of type "number": that one drops the characters that it does not know, so that
@@ -46,7 +55,7 @@ class NumberInput(Input):
         self.post_message(ExplanationWanted())
 
 
-class TextInput(Input):
+class TextInput(LineInput):
     """A line of text, in which a question mark is text too."""
 
     BINDINGS = [

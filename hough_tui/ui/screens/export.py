@@ -15,6 +15,7 @@ from textual.screen import ModalScreen
 from textual.widgets import Button, Input, RadioButton, RadioSet, Static
 
 from hough_tui.reports.documents import FORMATS
+from hough_tui.ui.forms.controls import LineInput
 from scenarios.files.atomic import replace_file
 
 Document = Mapping[str, Any]
@@ -60,7 +61,7 @@ class ExportScreen(ModalScreen[Path | None]):
         """Lay out the path, the formats, a line for notes, the buttons."""
         with Vertical():
             yield Static("Export the run to", classes="title", markup=False)
-            yield Input(str(self._given), id="path")
+            yield LineInput(str(self._given), id="path")
             with RadioSet():
                 for ending, (called, _) in FORMATS.items():
                     yield RadioButton(f"{called} ({ending})", value=ending == ".csv", id=f"as-{ending[1:]}")

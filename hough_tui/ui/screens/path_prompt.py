@@ -11,6 +11,8 @@ from textual.containers import Vertical
 from textual.screen import ModalScreen
 from textual.widgets import Input, Static
 
+from hough_tui.ui.forms.controls import LineInput
+
 
 class PathPrompt(ModalScreen[Path | None]):
     """Ask for the path of a file; with `is_new`, an existing file is confirmed by a second Enter."""
@@ -33,7 +35,7 @@ class PathPrompt(ModalScreen[Path | None]):
         """Lay out the title, the path and a line for notes."""
         with Vertical():
             yield Static(self._title, classes="title", markup=False)
-            yield Input(self._given, placeholder="path of a YAML file")
+            yield LineInput(self._given, placeholder="path of a YAML file")
             yield Static("", classes="note", markup=False)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
