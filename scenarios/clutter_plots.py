@@ -126,7 +126,7 @@ def put_clutter(  # type: ignore[no-untyped-def]
     is_polar, limits = measurement.is_polar[sensor], measurement.limits
     sigma, station = measurement.sigma, measurement.station
     uniform, lower, size = clutter.uniform, clutter.lower, clutter.size
-    of_batch, w = len(batch), 0.0
+    of_batch, w, has_covariance = len(batch), 0.0, len(covariance) > 0
     for plot in range(of_batch + number):
         if plot < of_batch:
             block, drawn_in, stream = 2 * batch[plot] + 1, np.int64(0), clutter_stream(source, 0)
@@ -145,6 +145,7 @@ def put_clutter(  # type: ignore[no-untyped-def]
             plots[row, 1] = lower[source, 1] + v * size[source, 1]
             if axes > 2:
                 plots[row, 2] = lower[source, 2] + w * size[source, 2]
-            put_variance(sigma, sensor, covariance, row)
+            if has_covariance:
+                put_variance(sigma, sensor, covariance, row)
         row += 1
     return row

@@ -17,6 +17,9 @@ from scenarios.scenes import Scene
 from scenarios.sensors import AnySensor, CartesianSensor, PolarSensor
 from scenarios.targets import Target
 
+MOST_STEPS = 1_000_000
+"""The most intervals in which the noise of a motion may be drawn."""
+
 
 class Scenario(Declared):
     """A piece of the world: targets, clutter, a sensor and its scans."""
@@ -57,6 +60,18 @@ class Scenario(Declared):
                 raise ValueError(
                     f"clutter is over: {source.over}, and a cartesian sensor has no sector; "
                     "give over: region, or polar sensors alone"
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _is_disturbed_seldom_enough(self) -> Self:
+        """Refuse process noise over more intervals than anyone would wait for in every trial."""
+        steps = self.last_time / self.interval
+        for index, target in enumerate(self.targets):
+            if target.motion.is_disturbed and steps > MOST_STEPS:
+                raise ValueError(
+                    f"targets[{index}] has process noise, drawn in each of {steps:,.0f} intervals until the "
+                    f"last scan; the limit is {MOST_STEPS:,}; give a longer interval or an earlier last scan"
                 )
         return self
 
@@ -161,9 +176,10 @@ class Scenario(Declared):
         """Return where the plots of a source of clutter lie."""
         if source.over != "targets":
             return source.region.box if source.region is not None else self.box
-        ends = [end for target in self.targets for end in target.ends(self.interval, self.last_time)]
-        axes = list(zip(*ends, strict=True))
-        return Box(tuple(map(min, axes)), tuple(map(max, axes)))
+        times = np.array([time for time, _, _ in self.timetable])
+        ends = [target.ends(self.interval, self.last_time) for target in self.targets]
+        paths = [target.path(times, self.interval) for target in self.targets]
+        return Box.around(np.vstack([*ends, *paths]))
 
     @property
     def context(self) -> Context:

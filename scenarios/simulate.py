@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
-from algorithms.hough.lines import line_through
 from algorithms.plots import PlotChunk
 from algorithms.scoring import Truth
 from algorithms.target_states import TargetStates
@@ -22,6 +21,7 @@ from scenarios.clutter_plots import clutter_numbers, put_clutter, sort_batch
 from scenarios.model import Scenario
 from scenarios.streams import Streams
 from scenarios.target_plots import target_plots, target_states
+from scenarios.true_lines import true_lines
 from scenarios.world import World
 
 Array = NDArray[np.float64]
@@ -141,10 +141,4 @@ def draw(world: World, seed: int, first_trial: int, trials: int = 1) -> Draw:
 
 def truth(scenario: Scenario, drawn: Draw) -> Truth:
     """Return the truth of a draw as the scorer takes it."""
-    targets, shift = scenario.targets, drawn.states.shift[..., :2]
-    start = np.array([target.position[:2] for target in targets], dtype=float).reshape(-1, 2) + shift
-    velocity = np.array([target.velocity[:2] for target in targets], dtype=float).reshape(-1, 2)
-    theta, rho = line_through(start, np.broadcast_to(velocity, start.shape))
-    ends = [[end[:2] for end in target.ends(scenario.interval, scenario.last_time)] for target in targets]
-    middle = np.array(ends, dtype=float).reshape(-1, 2, 2).mean(axis=1) + shift
-    return Truth(theta, rho, middle, drawn.origin, drawn.states)
+    return Truth(*true_lines(scenario, drawn.states), drawn.origin, drawn.states)

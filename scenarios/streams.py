@@ -13,8 +13,9 @@ import numpy as np
 
 from algorithms.compiled import kernel
 
-# Blocks of a target's stream in a scan; that of its start is in scan 0 of the first sensor alone.
-SEEN, NOISE, START, START_IN_SPACE, NOISE_IN_SPACE = 0, 1, 2, 3, 4
+# Blocks of a target's stream in a scan. Its start is drawn in scan 0 of the first sensor alone, and so
+# are its accelerations, with intervals since its birth in place of scans.
+SEEN, NOISE, START, START_IN_SPACE, NOISE_IN_SPACE, ACCELERATION, ACCELERATION_IN_SPACE = 0, 1, 2, 3, 4, 5, 6
 
 POINTS = 16
 """First block of a target's stream in a scan from which its points are drawn, two blocks a point."""

@@ -12,7 +12,16 @@ from algorithms.compiled import kernel
 from algorithms.streams import normal_pair, uniform_pair
 from scenarios.conversion import to_polar
 from scenarios.plot_rows import put_polar, put_variance
-from scenarios.streams import NOISE, NOISE_IN_SPACE, SEEN, START, START_IN_SPACE, target_stream
+from scenarios.streams import (
+    ACCELERATION,
+    ACCELERATION_IN_SPACE,
+    NOISE,
+    NOISE_IN_SPACE,
+    SEEN,
+    START,
+    START_IN_SPACE,
+    target_stream,
+)
 
 Array = NDArray[np.float64]
 
@@ -33,6 +42,44 @@ class TargetPlots(NamedTuple):
     rank: Array
     position: Array
     covariance: Array
+
+
+@kernel
+def _put_acceleration(ground, streams, trial, target, step, acceleration):  # type: ignore[no-untyped-def]
+    """Write the random acceleration of a target in an interval, counted from its birth."""
+    stream = target_stream(target, 0)
+    x, y = normal_pair(streams.seed, ACCELERATION, step, stream, trial)
+    acceleration[0], acceleration[1] = ground.noise[target, 0] * x, ground.noise[target, 1] * y
+    if len(acceleration) > 2:
+        z, _ = normal_pair(streams.seed, ACCELERATION_IN_SPACE, step, stream, trial)
+        acceleration[2] = ground.noise[target, 2] * z
+
+
+@kernel
+def _disturb(ground, streams, trial, target, position, velocity):  # type: ignore[no-untyped-def]
+    """Add to the states of a target in a trial what its random accelerations make of them.
+
+    Each acceleration holds for one interval of the scenario, counted from birth, whatever sensors look when.
+    """
+    scans, _, axes = position.shape
+    moved, speed, acceleration = np.zeros(axes), np.zeros(axes), np.empty(axes)
+    step, interval = 0, ground.interval
+    _put_acceleration(ground, streams, trial, target, step, acceleration)
+    for scan in range(scans):
+        if not ground.present[scan, target]:
+            continue
+        while ground.elapsed[scan, target] >= (step + 1) * interval:
+            for axis in range(axes):
+                moved[axis] += interval * (speed[axis] + 0.5 * interval * acceleration[axis])
+                speed[axis] += interval * acceleration[axis]
+            step += 1
+            _put_acceleration(ground, streams, trial, target, step, acceleration)
+        left = ground.elapsed[scan, target] - step * interval
+        for axis in range(axes):
+            position[scan, target, axis] += moved[axis] + left * (
+                speed[axis] + 0.5 * left * acceleration[axis]
+            )
+            velocity[scan, target, axis] += speed[axis] + left * acceleration[axis]
 
 
 @kernel
@@ -63,6 +110,8 @@ def target_states(ground, streams):  # type: ignore[no-untyped-def]
                     start = ground.start[target, axis] + shift[k, target, axis]
                     position[k, scan, target, axis] = start + ground.displacement[scan, target, axis]
                     velocity[k, scan, target, axis] = ground.velocity[scan, target, axis]
+            if ground.noise[target].any():
+                _disturb(ground, streams, trial, target, position[k], velocity[k])
     return position, velocity, shift
 
 

@@ -20,8 +20,10 @@ from algorithms.parameters import (
     Whole,
     parameter,
 )
+from scenarios.motion import AnyMotion, ConstantVelocity, Course
 from scenarios.sensors import Place
 
+Array = NDArray[np.float64]
 SLACK = 1e-6
 """Part of an interval by which a scan may miss the time of birth or death: products of times are rounded."""
 
@@ -47,7 +49,7 @@ class Extension(Declared):
 
 
 class Target(Declared):
-    """A target of constant velocity."""
+    """A target: where it appears, how it moves, how long it is there."""
 
     name: Name | None = parameter(None, help="what it is called in tables")
     position: Place = parameter(
@@ -55,6 +57,9 @@ class Target(Declared):
     )
     velocity: Place = parameter(
         dimension=Dimension.SPEED, help="[vx, vy, vz], in the unit of length a second; vz in space only"
+    )
+    motion: AnyMotion = parameter(
+        default_factory=ConstantVelocity, help="how it moves on from there; none: at constant velocity"
     )
     birth: Whole = parameter(
         0, dimension=Dimension.COUNT, help="the first scan in which it is there, by the scenario's interval"
@@ -80,18 +85,23 @@ class Target(Declared):
                 f"death {self.death} is given with birth {self.birth}; a target's last scan must not be "
                 "before its first"
             )
-        for name, given in (("velocity", self.velocity), ("spread", self.spread)):
-            if isinstance(given, tuple) and len(given) != len(self.position):
+        vectors: list[tuple[str, object]] = [("velocity", self.velocity), ("spread", self.spread)]
+        vectors += [(f"motion.{name}", vector) for name, vector in self.motion.vectors()]
+        for name, vector in vectors:
+            if isinstance(vector, tuple) and len(vector) != len(self.position):
                 raise ValueError(
-                    f"{name} has {len(given)} numbers and position {len(self.position)}; "
+                    f"{name} has {len(vector)} numbers and position {len(self.position)}; "
                     "give as many of each: 2 in the plane, 3 in space"
                 )
+        refusal = self.motion.refusal(self.position, self.velocity)
+        if refusal is not None:
+            raise ValueError(refusal)
         return self
 
     @property
     def stands_still(self) -> bool:
         """Whether it has no line in the plane (x, y)."""
-        return not any(self.velocity[:2])
+        return self.motion.stands_still(self.position, self.velocity)
 
     @property
     def spread_axes(self) -> tuple[float, ...]:
@@ -102,24 +112,28 @@ class Target(Declared):
         """Return the times of the first and the last scan in which it is there; the last may be infinite."""
         return self.birth * interval, math.inf if self.death is None else self.death * interval
 
-    def is_present(self, time: NDArray[np.float64], interval: float) -> NDArray[np.bool_]:
+    def is_present(self, time: Array, interval: float) -> NDArray[np.bool_]:
         """Return whether it is there at times, compared with birth and death on the grid of the interval."""
         number = time / interval
         born = number >= self.birth - SLACK
         return born if self.death is None else born & (number <= self.death + SLACK)
 
-    def course(self, elapsed: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return how far it has come and its velocity, float64 (n, d) each, at times since it appeared.
+    def course(self, elapsed: Array) -> Course:
+        """Return how far it has come and its velocity, float64 (n, d) each, without spread and noise.
 
         Parameters
         ----------
-        elapsed : float64 (n,), seconds
+        elapsed : float64 (n,), seconds since it appeared
         """
-        velocity = np.array(self.velocity, dtype=float)
-        return elapsed[:, None] * velocity, np.broadcast_to(velocity, (len(elapsed), len(velocity)))
+        return self.motion.course(np.array(self.position), np.array(self.velocity), elapsed)
 
-    def ends(self, interval: float, last: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return where its path begins and ends within a batch, as it is without `spread`.
+    def path(self, time: Array, interval: float) -> Array:
+        """Return its places, (n, d), at those times at which it is there, without spread and noise."""
+        moved, _ = self.course(time[self.is_present(time, interval)] - self.lifetime(interval)[0])
+        return np.array(self.position) + moved
+
+    def ends(self, interval: float, last: float) -> Array:
+        """Return where its path begins and ends within a batch, float64 (2, d), without spread and noise.
 
         Parameters
         ----------
@@ -127,6 +141,5 @@ class Target(Declared):
         last : time of the batch's last scan
         """
         begin, end = self.lifetime(interval)
-        elapsed = max(0.0, min(end, last) - begin)
-        moved = zip(self.position, self.velocity, strict=True)
-        return self.position, tuple(place + speed * elapsed for place, speed in moved)
+        moved, _ = self.course(np.array([0.0, max(0.0, min(end, last) - begin)]))
+        return np.array(self.position) + moved

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.target_states import TargetStates
 from scenarios.clutter import Clutter, ExactClutter, PoissonClutter
 from scenarios.model import Scenario
 from scenarios.sensors import CartesianSensor, PolarSensor
@@ -26,16 +27,22 @@ class Ground(NamedTuple):
     ----------
     start : float64 (targets, d), where each appears
     spread : float64 (targets, d), how far from there it may
+    elapsed : float64 (scans, targets), seconds since it appeared; NaN where it is not there
     displacement : float64 (scans, targets, d), from its start to its place; NaN where it is not there
     velocity : float64 (scans, targets, d); NaN where it is not there
     present : bool (scans, targets)
+    noise : float64 (targets, d), standard deviation of a random acceleration that is drawn in each interval
+    interval : seconds
     """
 
     start: Array
     spread: Array
+    elapsed: Array
     displacement: Array
     velocity: Array
     present: NDArray[np.bool_]
+    noise: Array
+    interval: float
 
 
 class Measurement(NamedTuple):
@@ -96,23 +103,40 @@ class World:
         """Return the arrays of a scenario."""
         return cls(_ground(scenario), _measurement(scenario), _clutter_sources(scenario))
 
+    @property
+    def planned_states(self) -> TargetStates:
+        """The states of targets before chance has a part in them, as those of one trial."""
+        ground = self.ground
+        position = ground.start + ground.displacement
+        return TargetStates(
+            self.measurement.time,
+            ground.present,
+            position[None],
+            ground.velocity[None],
+            np.zeros((1, *ground.start.shape)),
+        )
+
 
 def _ground(scenario: Scenario) -> Ground:
     axes, targets = scenario.dimensions, scenario.targets
     time = np.array([time for time, _, _ in scenario.timetable], dtype=float)
+    elapsed = np.full((len(time), len(targets)), np.nan)
     displacement = np.full((len(time), len(targets), axes), np.nan)
-    velocity, present = np.full_like(displacement, np.nan), np.zeros((len(time), len(targets)), np.bool_)
+    velocity, present = np.full_like(displacement, np.nan), np.zeros_like(elapsed, dtype=np.bool_)
     for index, target in enumerate(targets):
         there = target.is_present(time, scenario.interval)
+        elapsed[there, index] = time[there] - target.lifetime(scenario.interval)[0]
+        displacement[there, index], velocity[there, index] = target.course(elapsed[there, index])
         present[:, index] = there
-        moved, speed = target.course(time[there] - target.lifetime(scenario.interval)[0])
-        displacement[there, index], velocity[there, index] = moved, speed
     return Ground(
         _columns([target.position for target in targets], axes),
         _columns([target.spread_axes for target in targets], axes),
+        elapsed,
         displacement,
         velocity,
         present,
+        _columns([target.motion.noise_axes(axes) for target in targets], axes),
+        scenario.interval,
     )
 
 

@@ -32,7 +32,9 @@ class Dimension(StrEnum):
 
     LENGTH = "length"
     SPEED = "speed"
+    ACCELERATION = "acceleration"
     ANGLE = "angle"
+    TURN_RATE = "turn-rate"
     TIME = "time"
     COUNT = "count"
     FRACTION = "fraction"

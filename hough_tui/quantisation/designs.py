@@ -18,6 +18,8 @@ from scenarios.model import Scenario
 from scenarios.selection import changed, chosen_scenario
 from scenarios.sensors import PolarSensor
 from scenarios.targets import Target
+from scenarios.true_lines import fitted_motion
+from scenarios.world import World
 
 PLACEMENTS = 40
 """Places and headings of a target of which only the speed is known, in the trials of a check."""
@@ -83,18 +85,39 @@ class Design:
 
 
 def moving_targets(scenario: Scenario) -> dict[int, TargetLine]:
-    """Return the line of each target that moves and is there within the batch, by its number."""
-    found, context = {}, scenario.context
+    """Return the line of each target that moves and is there within the batch, by its number.
+
+    The line of a path that is none is that of the fit to it, see `scenarios.true_lines`.
+    """
+    lines, context = {}, scenario.context
     assert context.sigma is not None
     for index, target in enumerate(scenario.targets):
         begin, end = target.lifetime(scenario.interval)
         scans = math.floor((min(end, scenario.last_time) - begin) / context.interval + 1e-9) + 1
-        if scans > 0 and not target.stands_still:
-            sigma_x, sigma_y = context.sigma[:2]
-            found[index] = TargetLine.of_motion(
-                target.position[:2], target.velocity[:2], scans, context.interval, (sigma_x, sigma_y)
-            )
-    return found
+        if scans <= 0 or target.stands_still:
+            continue
+        first, velocity = (target.position[0], target.position[1]), (target.velocity[0], target.velocity[1])
+        if not target.motion.is_straight:
+            middle, fitted = (part[0] for part in fitted_motion(World.of(scenario).planned_states, index))
+            if not np.isfinite(middle).all():
+                # No scan of any sensor falls into its life.
+                continue
+            start = middle - 0.5 * (scans - 1) * context.interval * fitted
+            first, velocity = (float(start[0]), float(start[1])), (float(fitted[0]), float(fitted[1]))
+        sigma_x, sigma_y = context.sigma[:2]
+        lines[index] = TargetLine.of_motion(first, velocity, scans, context.interval, (sigma_x, sigma_y))
+    return lines
+
+
+def _greatest_departure(scenario: Scenario) -> float:
+    """Return how far the path of any target departs from its line, without noise."""
+    states, away = World.of(scenario).planned_states, [0.0]
+    for index, line in moving_targets(scenario).items():
+        assert line.theta is not None
+        assert line.middle is not None
+        apart = states.paths(0)[index][:, :2] - line.middle
+        away.append(float(np.abs(apart @ [math.cos(line.theta), math.sin(line.theta)]).max(initial=0.0)))
+    return max(away)
 
 
 def question_of(scenario: Scenario, demands: Demands | None = None) -> Question:
@@ -130,6 +153,13 @@ def scenario_design(name: str, assignments: Sequence[str], demands: Demands) -> 
 def taken_for(scenario: Scenario) -> dict[str, str]:
     """Return in words what of a scenario a question takes for something simpler."""
     found = {}
+    if any(not target.motion.is_straight for target in scenario.targets):
+        found["motion"] = (
+            "straight, along the line fitted to each path; paths depart from it by up to "
+            f"{_greatest_departure(scenario):.3g} {scenario.unit.value}"
+        )
+        if any(target.motion.is_disturbed for target in scenario.targets):
+            found["motion"] += " and by their process noise"
     if any(isinstance(sensor, PolarSensor) for sensor in scenario.sensors):
         found["noise"] = "everywhere that in the middle of the sensor's sector"
     if any(source.over in ("volume", "sector") for source in scenario.clutter):

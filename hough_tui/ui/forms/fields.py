@@ -155,7 +155,9 @@ def unit_text(dimension: Dimension | None, unit: Unit | None) -> str:
     units = {
         Dimension.LENGTH: length,
         Dimension.SPEED: f"{length}/s",
+        Dimension.ACCELERATION: f"{length}/s²",
         Dimension.ANGLE: "°",
+        Dimension.TURN_RATE: "°/s",
         Dimension.TIME: "s",
     }
     return units.get(dimension, "") if dimension else ""

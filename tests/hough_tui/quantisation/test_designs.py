@@ -11,7 +11,14 @@ from algorithms.context import Box, Unit
 from algorithms.quantisation.advisor import centred_grid
 from algorithms.quantisation.prediction import predict
 from hough_tui.quantisation.confirmation import run_trials
-from hough_tui.quantisation.designs import Demands, Sensing, moving_targets, question_of, sensing_design
+from hough_tui.quantisation.designs import (
+    Demands,
+    Sensing,
+    moving_targets,
+    question_of,
+    sensing_design,
+    taken_for,
+)
 from scenarios.model import Scenario
 
 BASE = {
@@ -41,6 +48,22 @@ def test_each_moving_target_has_a_line_of_its_own():
     assert lines[3].middle == pytest.approx((80 - 0.4 * 4 * 11 / 2, 40))
     # Along x only the noise on y lies across the line.
     assert lines[3].sigma == pytest.approx(0.2)
+
+
+def test_the_line_of_a_turn_is_that_fitted_to_it():
+    turn = {"position": [20, 30], "velocity": [0.3, 0.0], "motion": {"kind": "turn", "rate_deg": -30 / 44}}
+    turning = scenario(targets=[turn])
+    line = moving_targets(turning)[0]
+    # An arc of 30° to the left, whose fitted line is parallel to its chord.
+    assert math.degrees(line.theta) == pytest.approx(90 + 15)
+    half, radius = math.radians(15), 0.3 / math.radians(30 / 44)
+    assert line.extent == pytest.approx(2 * radius * math.sin(half), rel=0.01)
+    words = taken_for(turning)["motion"]
+    assert words.startswith("straight, along the line fitted to each path; paths depart from it by up to")
+    sagitta = radius * (1 - math.cos(half))
+    assert 0.5 * sagitta < float(words.split()[-2]) < sagitta
+    disturbed = scenario(targets=[{**turn, "motion": {"process_noise": 0.1}}])
+    assert taken_for(disturbed)["motion"].endswith("by their process noise")
 
 
 def test_all_clutter_is_in_the_question():
