@@ -16,7 +16,7 @@ import typer
 from hough_tui import streams
 from hough_tui.cli.advise import advise
 from hough_tui.cli.cluster import cluster
-from hough_tui.cli.listings import initiators, schema, sets, validate
+from hough_tui.cli.listings import initiators, metrics, schema, sets, validate
 from hough_tui.cli.output import print_line
 from hough_tui.cli.plots import initiate, simulate
 from hough_tui.cli.process import WRONG_REQUEST, failed, refuse, reported
@@ -82,7 +82,19 @@ def open_application(
 
 
 # As `--help` lists them.
-for command in (batch, initiate, simulate, advise, cluster, reproduce, sets, initiators, validate, schema):
+for command in (
+    batch,
+    initiate,
+    simulate,
+    advise,
+    cluster,
+    reproduce,
+    sets,
+    initiators,
+    metrics,
+    validate,
+    schema,
+):
     app.command()(command)
 app.command("open", hidden=True)(open_application)
 app.add_typer(results_app, name="results")

@@ -99,6 +99,19 @@ def validate(
 
 
 @reported
+def metrics(as_json: JsonOption = False) -> None:
+    """List what experiments measure: what --columns, --metric and charts take, and documents hold."""
+    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.layout import sheet_table
+    from hough_tui.reports.metric_listing import metric_document, metric_sheet
+
+    if as_json:
+        write_document(json_text(metric_document()))
+    else:
+        print_renderables(sheet_table(metric_sheet(), output_width()))
+
+
+@reported
 def schema() -> None:
     """Print the JSON Schema of scenario sets, for the completion of editors."""
     from hough_tui.reports.documents import json_text

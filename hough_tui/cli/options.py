@@ -2,40 +2,26 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from typing import Annotated
 
 import typer
 
-
-class Metric(StrEnum):
-    """What a chart of rates shows."""
-
-    SUCCESS = "success_rate"
-    CONTROL = "success_control"
-    FALSE = "false_track_ratio"
-    FALSE_TRACKS = "false_tracks_per_trial"
-    DUPLICATES = "duplicates_per_trial"
-    EXACT = "count_exact_rate"
-    EXCESS = "excess_per_trial"
-    CENTROID = "centroid_rmse"
-    SECONDS = "seconds_per_trial"
-
-
 MetricOption = Annotated[
-    Metric | None,
-    typer.Option(help="What --plot shows; by default success, of clusterings the exact counts."),
+    str | None,
+    typer.Option(
+        metavar="METRIC",
+        help="What --plot shows; by default success, of clusterings the exact counts. `hough-tui metrics` "
+        "lists what there is.",
+    ),
 ]
-
-
-class ComparedMetric(StrEnum):
-    """What of two runs can be compared."""
-
-    SUCCESS = "success_rate"
-    FALSE = "false_track_ratio"
-    EXACT = "count_exact_rate"
-
-
+ColumnsOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="METRIC,…",
+        help="What the tables show, in this order: metrics, intervals by METRIC_ci95, or all; by default "
+        "what fits.",
+    ),
+]
 SetArgument = Annotated[str, typer.Argument(metavar="SET", help="A YAML file, or the name of a bundled set.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document and nothing else.")]
 SeedOption = Annotated[

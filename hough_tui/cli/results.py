@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-from hough_tui.cli.options import ComparedMetric, JsonOption, MetricOption
+from hough_tui.cli.options import ColumnsOption, JsonOption, MetricOption
 from hough_tui.cli.output import output_width, print_renderables, write_document
 from hough_tui.cli.process import refuse, reported, tell
-from hough_tui.cli.runs import print_rates
+from hough_tui.cli.runs import Shown, print_rates
 
 results_app = typer.Typer(
     help="List, show, compare and export the runs that were kept.", no_args_is_help=True
@@ -49,17 +49,19 @@ def show_result(
     as_json: JsonOption = False,
     plot: Annotated[bool, typer.Option("--plot", help="Draw a chart of the rates below the tables.")] = False,
     metric: MetricOption = None,
+    columns: ColumnsOption = None,
 ) -> None:
     """Show the rates of a run that was kept."""
     refuse(as_json and plot, "--json prints one document and nothing else: leave out --plot")
     from hough_tui.experiments.stores.folder import FolderStore
     from hough_tui.reports.documents import json_text
 
+    shown = Shown.parse(columns, metric)
     document = FolderStore().document(name)
     if as_json:
         write_document(json_text(document))
     else:
-        print_rates(document["rows"], metric, plot)
+        print_rates(document["rows"], shown, plot)
 
 
 @results_app.command("compare")
@@ -69,27 +71,32 @@ def compare_results(
         list[str], typer.Argument(metavar="RUN RUN…", help="Names, or parts of them that fit no other.")
     ],
     metric: Annotated[
-        ComparedMetric | None,
-        typer.Option(help="What is compared; by default success, of clusterings the exact counts."),
+        str | None,
+        typer.Option(
+            metavar="METRIC",
+            help="What is compared: a metric that has an interval; by default success, of clusterings the "
+            "exact counts.",
+        ),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Compare runs row by row, each with the first, and tell which rates differ beyond chance."""
     refuse(len(names) < 2, f"there is one run only, '{names[0]}': name another one to compare it with")
+    from hough_tui.experiments.metrics.registry import leading_metric
     from hough_tui.experiments.stores.folder import FolderStore
     from hough_tui.reports.comparison import compare, comparison_document, comparison_sheet
     from hough_tui.reports.documents import json_text
     from hough_tui.reports.layout import sheet_table
-    from hough_tui.reports.metrics import leading_metric
+    from hough_tui.reports.metric_columns import charted
 
+    chosen = None if metric is None else charted(metric)
     store = FolderStore()
     full = [store.full_name(name) for name in names]
     twice = next((name for name in full if full.count(name) > 1), None)
     refuse(twice is not None, f"the run {twice} is given twice: a run does not differ from itself")
     runs = [(name, store.load(name)) for name in full]
     rows = [row for _, run in runs for row in run.document["rows"]]
-    key = metric.value if metric is not None else leading_metric(rows[0] if rows else {})
-    comparison = compare(runs, key)
+    comparison = compare(runs, chosen or leading_metric(rows))
     if as_json:
         write_document(json_text(comparison_document(comparison)))
     else:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import typer
 
 from hough_tui.cli.options import (
+    ColumnsOption,
     JsonOption,
-    Metric,
     MetricOption,
     SeedOption,
     TrialsOption,
@@ -45,6 +46,7 @@ def batch(
     ] = None,
     plot: Annotated[bool, typer.Option("--plot", help="Draw a chart of the rates below the tables.")] = False,
     metric: MetricOption = None,
+    columns: ColumnsOption = None,
     keep: Annotated[
         bool, typer.Option("--keep/--no-keep", help="Keep the run below the data directory.")
     ] = True,
@@ -62,6 +64,7 @@ def batch(
     from scenarios.files.atomic import replace_file
     from scenarios.files.set_files import load_set
 
+    shown = Shown.parse(columns, metric)
     plan = plan_run([load_set(name) for name in sets], experiments=experiment or (), trials=trials, seed=seed)
     announce_compilation()
     job = Job(plan, workers)
@@ -79,7 +82,7 @@ def batch(
     elif str(csv) == "-":
         write_document(csv_text(run.document["rows"]))
     else:
-        print_rates(run.document["rows"], metric, plot)
+        print_rates(run.document["rows"], shown, plot)
     if csv is not None and str(csv) != "-":
         replace_file(csv, csv_text(run.document["rows"]))
     seconds = job.seconds
@@ -108,23 +111,51 @@ def keep_run(run: Any) -> int:
     return 0
 
 
-def print_rates(rows: list[dict[str, Any]], metric: Metric | None, with_charts: bool) -> None:
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """What is shown of result rows.
+
+    Attributes
+    ----------
+    columns : keys of the columns of tables; None for what fits
+    metric : key of what charts show; None for what rows of a kind are for
+    """
+
+    columns: tuple[str, ...] | None
+    metric: str | None
+
+    @classmethod
+    def parse(cls, columns: str | None, metric: str | None) -> Self:
+        """Return what options ask for.
+
+        Raises
+        ------
+        RequestError
+            Where there is no such column or metric.
+        """
+        from hough_tui.reports.metric_columns import charted, parse_columns
+
+        wanted = None if columns is None else parse_columns(columns)
+        return cls(wanted, None if metric is None else charted(metric).key)
+
+
+def print_rates(rows: list[dict[str, Any]], shown: Shown, with_charts: bool) -> None:
     """Print the tables of rows and, if so asked, a chart of each experiment."""
     from itertools import groupby
 
+    from hough_tui.experiments.metrics.registry import leading_metric
     from hough_tui.reports.charts import rate_chart
-    from hough_tui.reports.metrics import leading_metric
     from hough_tui.reports.tables import rate_tables
 
     width = output_width()
-    print_renderables(*rate_tables(rows, width))
+    print_renderables(*rate_tables(rows, width, shown.columns))
     if not with_charts:
         return
     for (_, name), group in groupby(rows, key=lambda row: (row["set"], row["experiment"])):
         print_line(f"\n{name}")
-        found = list(group)
-        chosen = metric.value if metric is not None else leading_metric(found[0])
-        print_picture(rate_chart(found, chosen, min(width, 120), 22, is_coloured()))
+        part = list(group)
+        key = shown.metric or leading_metric(part).key
+        print_picture(rate_chart(part, key, min(width, 120), 22, is_coloured()))
 
 
 @reported

@@ -74,7 +74,7 @@ class Cell(ABC, Generic[WorldT, EntryT]):
         return str(self.parameters.model_dump_json())
 
     def heading(self, trials: int) -> Row:
-        """Return what a row says before its figures."""
+        """Return the beginning of a row: what ran, and how often."""
         return {
             "set": self.set_name,
             "experiment": self.experiment.name,
@@ -84,9 +84,13 @@ class Cell(ABC, Generic[WorldT, EntryT]):
             "seed": self.experiment.seed,
         }
 
+    def settings(self) -> Row:
+        """Return the end of a row: by which settings it ran."""
+        return {"parameters": self.parameters.model_dump(mode="json")}
+
     def blank(self) -> Row:
         """Return the row as it is before any trial is finished."""
-        return self.heading(0)
+        return self.heading(0) | self.settings()
 
     @property
     @abstractmethod
@@ -96,16 +100,6 @@ class Cell(ABC, Generic[WorldT, EntryT]):
     @abstractmethod
     def empty_columns(self) -> Columns:
         """Return columns to be filled part by part."""
-
-    @abstractmethod
-    def tally(self, columns: Any, seconds: float) -> Row:
-        """Return the row of the document that tables, charts and files are made of.
-
-        Parameters
-        ----------
-        columns : what each trial gave, at least one trial
-        seconds : worker time from draw to score
-        """
 
     @abstractmethod
     def shared(self, runs: tuple[SharedRun[Any], ...]) -> SharedDraws[Any, Any]:

@@ -10,14 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.errors import RequestError
-from algorithms.intervals import Z95, count_interval, effective_count, mean_interval, normal_interval
+from algorithms.intervals import Z95, effective_count
 from algorithms.parameters import unknown
-from hough_tui.experiments.cases import AnyCell
-from hough_tui.experiments.columns.schema import Columns
+from hough_tui import __version__
 from hough_tui.experiments.engines.threads import Job
+from hough_tui.experiments.formats import FORMAT
+from hough_tui.experiments.metrics.metric import AnySample, Sample
+from hough_tui.experiments.metrics.registry import metric
 from hough_tui.experiments.plan import Plan, plan_run
 from hough_tui.published import clustering, course, par, thesis
-from hough_tui.published.tables import MEASURES, Entry, PublishedTable
+from hough_tui.published.tables import Entry, PublishedTable
 from scenarios.files.set_files import load_set
 
 TABLES: dict[str, PublishedTable] = {
@@ -56,56 +58,48 @@ def plan_table(table: PublishedTable, trials: int, seed: int | None = None) -> P
 
 def compare(table: PublishedTable, job: Job) -> dict[str, Any]:
     """Return a table's published figures beside those that a finished job measured."""
-    found = [(cell, columns) for cell, columns, _ in job.finished()]
+    samples = [Sample(cell, columns, seconds) for cell, columns, seconds in job.finished()]
     return {
+        "format": FORMAT,
+        "version": __version__,
         "table": table.name,
         "title": table.title,
         "source": table.source,
         "trials": int(job.progress.total[0]),
         "published_trials": table.trials,
-        "rows": [_compared(table, entry, _columns_of(entry, found)) for entry in table.entries],
+        "rows": [_compared(table, entry, _sample_of(entry, samples)) for entry in table.entries],
     }
 
 
-def _columns_of(entry: Entry, found: Sequence[tuple[AnyCell, Columns]]) -> Columns:
+def _sample_of(entry: Entry, samples: Sequence[AnySample]) -> AnySample:
     return next(
-        columns
-        for cell, columns in found
-        if cell.experiment.name == entry.experiment
-        and cell.entry.name == entry.method
-        and cell.swept == entry.swept
-        and entry.world in (None, cell.world.name)
+        sample
+        for sample in samples
+        if sample.cell.experiment.name == entry.experiment
+        and sample.cell.entry.name == entry.method
+        and sample.cell.swept == entry.swept
+        and entry.world in (None, sample.cell.world.name)
     )
 
 
-def _compared(table: PublishedTable, entry: Entry, columns: Columns) -> dict[str, Any]:
-    measure = MEASURES[entry.metric]
-    values = measure.values(columns)
-    values = values[np.isfinite(values)]
-    told: dict[str, Any] = {
+def _compared(table: PublishedTable, entry: Entry, sample: AnySample) -> dict[str, Any]:
+    measure = metric(entry.metric)
+    estimate = measure.estimate(sample)
+    row: dict[str, Any] = {
         "case": entry.case,
         "metric": entry.metric,
         "published": entry.published,
-        "measured": None,
-        "ci95": None,
+        "measured": estimate.value,
+        "ci95": None if estimate.interval is None else list(estimate.interval),
         "consistent": None,
         "note": entry.note,
-        "trials_counted": len(values),
+        "trials_counted": estimate.trials,
     }
-    if len(values):
-        around = count_interval if measure.is_count else normal_interval
-        interval = mean_interval if measure.is_share else around
+    if estimate.value is not None and entry.published is not None and entry.is_judged:
+        values = measure.per_trial(sample)
         test = is_consistent_rate if measure.is_share else is_consistent_mean
-        told["measured"] = float(values.mean())
-        low, high = interval(values)
-        # The normal distribution knows no bound; nothing that is compared can be negative.
-        told["ci95"] = [max(0.0, low), high]
-        if measure.is_root:
-            told["measured"] = math.sqrt(values.mean())
-            told["ci95"] = [math.sqrt(end) for end in told["ci95"]]
-        if entry.published is not None and entry.is_judged:
-            told["consistent"] = test(entry.published, table.trials, table.rounding, values)
-    return told
+        row["consistent"] = test(entry.published, table.trials, table.rounding, values[np.isfinite(values)])
+    return row
 
 
 def is_consistent_rate(published: float, trials: int, rounding: float, values: NDArray[np.float64]) -> bool:

@@ -107,5 +107,5 @@ def _rates(home: NDArray[Any], block: NDArray[Any]) -> dict[str, Any]:
         "home_cell_rate": float(home.mean()),
         "home_cell_ci95": list(mean_interval(home)),
         "success_rate": float(block.mean()),
-        "success_ci95": list(mean_interval(block)),
+        "success_rate_ci95": list(mean_interval(block)),
     }

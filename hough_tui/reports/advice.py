@@ -131,7 +131,7 @@ def check_sheet(document: Document) -> Sheet:
         Column("home cell\n%", aligned([percent(number(row["home_cell_rate"])) for row in measured])),
         Column("95 %\ninterval", _ends(measured, "home_cell_ci95"), quiet=True, rank=10),
         Column("3 × 3\n%", aligned([percent(number(row["success_rate"])) for row in measured])),
-        Column("95 %\ninterval", _ends(measured, "success_ci95"), quiet=True, rank=10),
+        Column("95 %\ninterval", _ends(measured, "success_rate_ci95"), quiet=True, rank=10),
     )
     low, high = (significant(end) for end in pair(check.get("false_cells_ci95")))
     told = significant(number(document.get("expected_false_cells")))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from string import ascii_uppercase
 from typing import Any
@@ -12,22 +13,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hough_tui.experiments.results import Identity, identity
+from algorithms.errors import RequestError
+from hough_tui.experiments.cases import AnyCell
+from hough_tui.experiments.metrics.registry import AnyMetric
+from hough_tui.experiments.results import Identity, cells_of_run, identity, sample_of_row
 from hough_tui.experiments.stores.folder import Run
+from hough_tui.reports.field_names import field_name
 from hough_tui.reports.layout import Column, Sheet
-from hough_tui.reports.metrics import field_name, metric
-from hough_tui.reports.numerals import NONE, Pair, aligned, as_given, fixed, intervals, number, pair, percent
+from hough_tui.reports.metric_columns import interval_texts, measured, metric_texts
+from hough_tui.reports.numerals import NONE, Pair, aligned, as_given, intervals, number, pair
 from scenarios.sweeps import SINGULAR
-
-METRICS = ("success_rate", "false_track_ratio", "count_exact_rate")
-"""What can be compared: shares that have an interval and a value in each trial."""
 
 Row = Mapping[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A second rate less a first one.
+    """A second figure less a first one.
 
     Attributes
     ----------
@@ -45,19 +47,20 @@ class Difference:
 
 
 def difference(first: float, ends: Pair, second: float, others: Pair, correlation: float = 0.0) -> Difference:
-    """Return the difference of two rates with its interval, from the intervals of the two.
+    """Return the difference of two figures with its interval, from the intervals of the two.
 
     Parameters
     ----------
-    first, ends : a rate and the ends of its interval
+    first, ends : a figure and the ends of its interval
     second, others : another one
-    correlation : of the two rates' per-trial values, where both saw the same draws; 0 where
+    correlation : of the two figures' per-trial values, where both saw the same draws; 0 where
         they are independent
 
     References
     ----------
     R. G. Newcombe, Statistics in Medicine 17, 1998: pages 873 (method 10, independent) and 2635
-    (method 10, paired).
+    (method 10, paired); of figures that are no rates, G. Y. Zou and A. Donner, Statistics in Medicine 27,
+    2008, page 1693.
     """
     below, above = first - (ends[0] or 0.0), (ends[1] or 0.0) - first
     below_other, above_other = second - (others[0] or 0.0), (others[1] or 0.0) - second
@@ -92,13 +95,13 @@ class Comparison:
 
     Attributes
     ----------
-    key : the metric, one of `METRICS`
+    metric : what is compared
     names, seeds : of the runs
     rows : those that stand in more than one run
     lone : number of rows that stand in one run only
     """
 
-    key: str
+    metric: AnyMetric
     names: tuple[str, ...]
     seeds: tuple[Any, ...]
     rows: tuple[ComparedRow, ...]
@@ -110,21 +113,36 @@ class Comparison:
         return "".join(ascii_uppercase[index % 26] for index in range(len(self.names)))
 
 
-def compare(runs: Sequence[tuple[str, Run]], key: str) -> Comparison:
+def comparable(rows: Sequence[Row]) -> list[AnyMetric]:
+    """Return the metrics that rows can be compared by: those that have an interval in some row."""
+    return [
+        metric
+        for metric in measured(rows)
+        if any(None not in pair(row.get(metric.interval_key or "")) for row in rows)
+    ]
+
+
+def compare(runs: Sequence[tuple[str, Run]], metric: AnyMetric) -> Comparison:
     """Compare runs, the first of them with each of the others.
 
     Parameters
     ----------
     runs : names and runs, at least two
-    key : of `METRICS`
+    metric : what is compared
+
+    Raises
+    ------
+    RequestError
+        Where the metric has no interval.
     """
-    places = [{identity(row): index for index, row in enumerate(run.document["rows"])} for _, run in runs]
-    everywhere = list(dict.fromkeys(row for found in places for row in found))
-    common = [row for row in everywhere if sum(row in found for found in places) > 1]
-    paired = list(zip(places, runs, strict=True))
-    rows = [_compared(row, [(run, place.get(row)) for place, (_, run) in paired], key) for row in common]
+    if metric.interval_key is None:
+        raise RequestError(f"{metric.key} has no interval, so that no difference can be told from chance")
+    sides = [_Side(run) for _, run in runs]
+    everywhere = list(dict.fromkeys(row for side in sides for row in side.places))
+    common = [row for row in everywhere if sum(row in side.places for side in sides) > 1]
+    rows = [_compared(row, sides, metric) for row in common]
     return Comparison(
-        key,
+        metric,
         tuple(name for name, _ in runs),
         tuple(run.document.get("seed") for _, run in runs),
         tuple(rows),
@@ -132,34 +150,62 @@ def compare(runs: Sequence[tuple[str, Run]], key: str) -> Comparison:
     )
 
 
-def _compared(row: Identity, found: Sequence[tuple[Run, int | None]], key: str) -> ComparedRow:
-    """Return what runs say of a row, from the place that it has in each of them."""
-    base, first = found[0]
-    told = [None if at is None else run.document["rows"][at] for run, at in found]
-    differences = [_difference(base, first, run, at, key) for run, at in found[1:]]
-    return ComparedRow(row, tuple(told), (None, *differences))
+class _Side:
+    """One of the runs, with the cells behind its rows."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self.rows: list[Row] = run.document["rows"]
+        self.places = {identity(row): index for index, row in enumerate(self.rows)}
+
+    @cached_property
+    def cells(self) -> list[AnyCell | None]:
+        """The cell of each row; None where the sets that were kept do not hold it."""
+        return cells_of_run(self.run)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether every trial was done."""
+        return bool(self.run.document.get("complete", True))
+
+    def row(self, wanted: Identity) -> Row | None:
+        """Return a row; None where there is no such one."""
+        return self.rows[self.places[wanted]] if wanted in self.places else None
+
+    def per_trial(self, wanted: Identity, metric: AnyMetric) -> NDArray[np.float64]:
+        """Return one number a trial of a row; none where its cell is not known."""
+        place = self.places[wanted]
+        cell = self.cells[place]
+        return np.zeros(0) if cell is None else metric.per_trial(sample_of_row(self.run, place, cell))
+
+
+def _compared(wanted: Identity, sides: Sequence[_Side], metric: AnyMetric) -> ComparedRow:
+    """Return what runs say of a row."""
+    differences = [_difference(sides[0], other, wanted, metric) for other in sides[1:]]
+    return ComparedRow(wanted, tuple(side.row(wanted) for side in sides), (None, *differences))
 
 
 def comparison_sheet(comparison: Comparison) -> Sheet:
     """Return a comparison as a table."""
-    known, rows = metric(comparison.key), comparison.rows
+    metric, rows = comparison.metric, comparison.rows
     columns = _names([row.identity for row in rows]) if rows else []
+    units = {str(row.get("unit") or "") for compared in rows for row in compared.rows if row is not None}
+    length = units.pop() if len(units) == 1 else ""
     for index, letter in enumerate(comparison.letters) if rows else ():
-        told = [row.rows[index] or {} for row in rows]
-        values = [percent(number(row.get(comparison.key))) for row in told]
-        columns.append(Column(f"{letter}\n{known.label}", aligned(values)))
-        ends = [pair(row.get(known.interval or "")) for row in told]
-        shown = intervals([(percent(low), percent(high)) for low, high in ends])
-        columns.append(Column(f"{letter}\n95 %", shown, rank=20, quiet=True))
+        own = [row.rows[index] or {} for row in rows]
+        values = metric_texts(metric, [number(row.get(metric.key)) for row in own])
+        columns.append(Column(f"{letter}\n{metric.label(length)}", aligned(values), key=metric.key))
+        ends = interval_texts(metric, [pair(row.get(metric.interval_key or "")) for row in own])
+        columns.append(Column(f"{letter}\n95 %", ends, rank=20, quiet=True))
     for index, letter in list(enumerate(comparison.letters))[1:] if rows else ():
-        heading = f"{letter} − {comparison.letters[0]}"
-        columns += _difference_columns(heading, [row.differences[index] for row in rows])
+        heading = f"{letter} − {comparison.letters[0]}\n{_unit_of_difference(metric, length)}".rstrip()
+        columns += _difference_columns(metric, heading, [row.differences[index] for row in rows])
     return Sheet("", tuple(columns), tuple(_notes(comparison)))
 
 
 def comparison_document(comparison: Comparison) -> dict[str, Any]:
     """Return a comparison as scripts read it."""
-    known = metric(comparison.key)
+    key, interval = comparison.metric.key, comparison.metric.interval_key or ""
     rows = []
     for row in comparison.rows:
         set_name, experiment, parts, swept = row.identity
@@ -170,62 +216,55 @@ def comparison_document(comparison: Comparison) -> dict[str, Any]:
                 "experiment": experiment,
                 **{part: name for part, name in named if name is not None},
                 "swept": dict(swept),
-                "values": [None if told is None else told.get(comparison.key) for told in row.rows],
-                "ci95": [None if told is None else told.get(known.interval or "") for told in row.rows],
+                "values": [None if one is None else one.get(key) for one in row.rows],
+                "ci95": [None if one is None else one.get(interval) for one in row.rows],
                 "differences": [
                     None
-                    if found is None
+                    if one is None
                     else {
-                        "value": found.value,
-                        "ci95": [found.low, found.high],
-                        "beyond_chance": found.is_beyond_chance,
+                        "value": one.value,
+                        "ci95": [one.low, one.high],
+                        "beyond_chance": one.is_beyond_chance,
                     }
-                    for found in row.differences
+                    for one in row.differences
                 ],
             }
         )
     return {
         "runs": list(comparison.names),
         "seeds": list(comparison.seeds),
-        "metric": comparison.key,
+        "metric": key,
         "rows": rows,
         "rows_in_one_run_only": comparison.lone,
         "same_criteria": not _differ_in_criteria(comparison),
     }
 
 
-def _difference(base: Run, first: int | None, other: Run, second: int | None, key: str) -> Difference | None:
-    if first is None or second is None:
+def _difference(base: _Side, other: _Side, wanted: Identity, metric: AnyMetric) -> Difference | None:
+    before, after = base.row(wanted), other.row(wanted)
+    if before is None or after is None:
         return None
-    before, after = base.document["rows"][first], other.document["rows"][second]
-    values = number(before.get(key)), number(after.get(key))
-    ends = metric(key).interval or ""
+    values = number(before.get(metric.key)), number(after.get(metric.key))
+    ends = metric.interval_key or ""
     pairs = pair(before.get(ends)), pair(after.get(ends))
     if None in (*values, *pairs[0], *pairs[1]):
         return None
     related = 0.0
     # Trials of one seed are one and the same draws, or share their clutter: they go in pairs.
     if before["seed"] == after["seed"] and before["trials"] == after["trials"]:
-        if base.document.get("complete", True) and other.document.get("complete", True):
-            related = _correlation(
-                _per_trial(base.columns[first], key), _per_trial(other.columns[second], key)
-            )
+        if base.is_complete and other.is_complete:
+            related = _correlation(base.per_trial(wanted, metric), other.per_trial(wanted, metric))
     return difference(values[0] or 0.0, pairs[0], values[1] or 0.0, pairs[1], related)
 
 
-def _per_trial(columns: Mapping[str, NDArray[Any]], key: str) -> NDArray[np.float64]:
-    if key == "success_rate":
-        found: NDArray[np.float64] = columns["found"].mean(axis=1)
-        return found
-    if key == "count_exact_rate":
-        return np.asarray(columns["excess"] == 0, np.float64)
-    ratio: NDArray[np.float64] = columns["false"] / np.maximum(columns["tracks"], 1)
-    return ratio
-
-
 def _correlation(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
-    spread = float(first.std() * second.std())
-    if len(first) != len(second) or spread == 0.0:
+    if len(first) != len(second):
+        return 0.0
+    # A trial in which one of the two has nothing to say makes no pair.
+    both = np.isfinite(first) & np.isfinite(second)
+    first, second = first[both], second[both]
+    spread = float(first.std() * second.std()) if len(first) > 1 else 0.0
+    if spread == 0.0:
         return 0.0
     return float(((first - first.mean()) * (second - second.mean())).mean()) / spread
 
@@ -247,28 +286,34 @@ def _names(rows: Sequence[Identity]) -> list[Column]:
     return columns
 
 
-def _difference_columns(heading: str, differences: Sequence[Difference | None]) -> list[Column]:
-    values = aligned([NONE if given is None else _signed(given.value) for given in differences])
+def _unit_of_difference(metric: AnyMetric, length: str) -> str:
+    return "points" if metric.is_share else metric.unit_of(length)
+
+
+def _difference_columns(
+    metric: AnyMetric, heading: str, differences: Sequence[Difference | None]
+) -> list[Column]:
+    values = aligned([NONE if one is None else _signed(metric, one.value) for one in differences])
     ends = intervals(
         [
-            (NONE, NONE) if given is None else (_signed(given.low), _signed(given.high))
-            for given in differences
+            (NONE, NONE) if one is None else (_signed(metric, one.low), _signed(metric, one.high))
+            for one in differences
         ]
     )
     verdicts = tuple(
-        NONE if given is None else "differs" if given.is_beyond_chance else "" for given in differences
+        NONE if one is None else "differs" if one.is_beyond_chance else "" for one in differences
     )
     styles = tuple("bold" if verdict == "differs" else "" for verdict in verdicts)
     return [
-        Column(f"{heading}\npoints", values, styles=styles),
+        Column(heading, values, styles=styles),
         Column("95 %\ninterval", ends, quiet=True),
         Column("beyond\nchance", verdicts, prose=True, styles=styles),
     ]
 
 
-def _signed(share: float) -> str:
-    text = fixed(100.0 * share, 1)
-    return text if text.startswith("-") or text == "0.0" else f"+{text}"
+def _signed(metric: AnyMetric, value: float) -> str:
+    (text,) = metric_texts(metric, [value])
+    return text if text.startswith("-") or text in ("0", "0.0") else f"+{text}"
 
 
 def _notes(comparison: Comparison) -> list[str]:
@@ -282,13 +327,13 @@ def _notes(comparison: Comparison) -> list[str]:
             "No row stands in more than one of them: rows are matched by set, experiment, what of the set "
             "runs, and swept values.",
         ]
-    found = [given for row in comparison.rows for given in row.differences if given is not None]
-    surprising = sum(given.is_beyond_chance for given in found)
+    differences = [one for row in comparison.rows for one in row.differences if one is not None]
+    surprising = sum(one.is_beyond_chance for one in differences)
     notes.append(
-        f"{surprising} of {len(found)} differences {'lies' if surprising == 1 else 'lie'} beyond chance; "
-        f"with 95 % intervals one in 20 would without any cause."
-        if found
-        else f"Nothing here has a rate of {metric(comparison.key).label} in two of them."
+        f"{surprising} of {len(differences)} differences {'lies' if surprising == 1 else 'lie'} beyond "
+        "chance; with 95 % intervals one in 20 would without any cause."
+        if differences
+        else f"Nothing here has a figure of {comparison.metric.label()} in two of them."
     )
     if comparison.lone:
         stand = "s stand" if comparison.lone > 1 else " stands"
@@ -302,5 +347,5 @@ def _differ_in_criteria(comparison: Comparison) -> bool:
     return any(
         before.get("criterion") != after.get("criterion")
         for row in comparison.rows
-        for before, after in pairwise(told for told in row.rows if told is not None)
+        for before, after in pairwise(one for one in row.rows if one is not None)
     )

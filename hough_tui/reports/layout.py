@@ -44,6 +44,7 @@ class Column:
     quiet : drawn dim
     called : what a note calls the column when there is no room for it; by default its heading
     styles : the style of single cells, by row; empty for none
+    key : of the metric, or of the interval, that it shows; empty for any other column
     """
 
     heading: str
@@ -53,6 +54,7 @@ class Column:
     quiet: bool = False
     called: str = ""
     styles: tuple[str, ...] = ()
+    key: str = ""
 
     def __post_init__(self) -> None:
         # What is shown is measured: characters that act are escapes before any width is worked out.

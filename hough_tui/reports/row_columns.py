@@ -1,26 +1,20 @@
-"""Columns of tables of result rows, whatever was tried: names, swept values, rates, intervals, trials."""
+"""Columns of tables of result rows beside their metrics: names and swept values."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+from hough_tui.reports.field_names import field_name
 from hough_tui.reports.layout import Column, broken, repeats
-from hough_tui.reports.metrics import field_name
 from hough_tui.reports.numerals import (
     NONE,
     aligned,
     as_given,
-    durations,
-    intervals,
     number,
-    pair,
-    percent,
-    significant,
 )
 
 Row = Mapping[str, Any]
-Texts = Callable[[Sequence[Row], str], tuple[str, ...]]
 
 SHORT_KEY = 8
 
@@ -55,43 +49,6 @@ def swept_columns(rows: Sequence[Row]) -> list[Column]:
         )
         for key, name in zip(keys, names, strict=True)
     ]
-
-
-def percents(rows: Sequence[Row], key: str) -> tuple[str, ...]:
-    """Return values as per cent."""
-    return aligned([percent(number(row.get(key))) for row in rows])
-
-
-def plain(rows: Sequence[Row], key: str) -> tuple[str, ...]:
-    """Return values with as many digits as mean something."""
-    return aligned([significant(number(row.get(key))) for row in rows])
-
-
-def measured(
-    rows: Sequence[Row], heading: str, key: str, texts: Texts = plain, *, rank: int, called: str = ""
-) -> list[Column]:
-    """Return a column, or none where no row has a value for it."""
-    if all(number(row.get(key)) is None for row in rows):
-        return []
-    return [Column(heading, texts(rows, key), rank=rank, called=called)]
-
-
-def interval(rows: Sequence[Row], key: str, *, rank: int, called: str) -> list[Column]:
-    """Return the column of an interval of a rate, or none where no row has one."""
-    pairs = [pair(row.get(key)) for row in rows]
-    if all(ends == (None, None) for ends in pairs):
-        return []
-    cells = intervals([(percent(low), percent(high)) for low, high in pairs])
-    return [Column("95 %\ninterval", cells, rank=rank, quiet=True, called=called)]
-
-
-def time_column(rows: Sequence[Row]) -> list[Column]:
-    """Return the column of the time that a trial took, or none."""
-    seconds = [number(row.get("seconds_per_trial")) for row in rows]
-    if all(value is None for value in seconds):
-        return []
-    unit, cells = durations(seconds)
-    return [Column(f"{unit}\n/trial", cells, rank=65, called="time a trial")]
 
 
 def trial_words(rows: Sequence[Row]) -> str:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from hough_tui.reports.metrics import PARTS, field_name
-from hough_tui.reports.metrics import metric as metric_called
+from hough_tui.experiments.metrics.registry import metric as metric_of
+from hough_tui.reports.field_names import PARTS, field_name
 from hough_tui.reports.numerals import Pair, as_given, number, pair
 from hough_tui.reports.visible import visible_line
 
@@ -84,8 +84,8 @@ def rate_series(rows: Sequence[Row], metric: str) -> ChartData:
     rows : result rows of one experiment
     metric : key of a measured quantity
     """
-    known = metric_called(metric)
-    factor = 100.0 if known.share else 1.0
+    shown = metric_of(metric)
+    factor = 100.0 if shown.is_share else 1.0
     rows = [row for row in rows if number(row.get(metric)) is not None]
     key = _swept_key(rows)
     groups: dict[str, list[Row]] = {}
@@ -98,11 +98,13 @@ def rate_series(rows: Sequence[Row], metric: str) -> ChartData:
         part = sorted(part, key=lambda row: _swept(row, key)) if key else part
         x = tuple(_place(_swept(row, key), is_wide) if key else float(index) for row in part)
         y = tuple(factor * (number(row[metric]) or 0.0) for row in part)
-        ends = tuple(_interval(row, known.interval, factor) for row in part)
+        ends = tuple(_interval(row, shown.interval_key, factor) for row in part)
         series.append(Series(label, MARKERS[index % len(MARKERS)], x, y, ends))
     written = [_place(value, is_wide) for value in values], [as_given(value) for value in values]
     named = visible_line(field_name(key)) + (" (logarithmic)" if is_wide else "")
-    return ChartData(known.label, known.share, named, written, tuple(series))
+    units = {str(row.get("unit") or "") for row in rows}
+    label = shown.label(units.pop() if len(units) == 1 else "")
+    return ChartData(label, shown.is_share, named, written, tuple(series))
 
 
 def _swept_key(rows: Sequence[Row]) -> str:

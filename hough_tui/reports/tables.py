@@ -8,8 +8,9 @@ from typing import Any
 
 from rich.table import Table
 
+from hough_tui.experiments.metrics.registry import metric as metric_of
 from hough_tui.reports.layout import Column, Sheet, repeats, sheet_table
-from hough_tui.reports.metrics import metric
+from hough_tui.reports.metric_columns import metric_texts
 from hough_tui.reports.numerals import (
     NONE,
     aligned,
@@ -20,7 +21,6 @@ from hough_tui.reports.numerals import (
     intervals,
     number,
     pair,
-    percent,
     significant,
 )
 from hough_tui.reports.rates import rate_sheets
@@ -30,15 +30,16 @@ Document = Mapping[str, Any]
 VERDICTS = {True: "yes", False: "no", None: NONE}
 
 
-def rate_tables(rows: Sequence[Document], width: int) -> list[Table]:
+def rate_tables(rows: Sequence[Document], width: int, wanted: Sequence[str] | None = None) -> list[Table]:
     """Return one table for each experiment of each set.
 
     Parameters
     ----------
     rows : result rows as `hough-tui batch --json` prints them
     width : of the terminal, in cells
+    wanted : keys of the metrics and intervals to show, in this order; None for those that say something
     """
-    return [sheet_table(sheet, width) for sheet in rate_sheets(rows)]
+    return [sheet_table(sheet, width) for sheet in rate_sheets(rows, wanted)]
 
 
 def track_table(document: Document, width: int, most: int | None = None) -> Table:
@@ -122,13 +123,11 @@ def track_sheet(document: Document, most: int | None = None) -> Sheet:
 def published_sheet(document: Document) -> Sheet:
     """Return published beside measured figures, as `published_table` shows them."""
     rows = list(document.get("rows") or [])
-    metrics = [metric(str(row.get("metric") or "")) for row in rows]
+    metrics = [metric_of(str(row.get("metric") or "")) for row in rows]
 
     def texts(values: Sequence[float | None]) -> list[str]:
-        return [
-            percent(value) if known.share else significant(value)
-            for known, value in zip(metrics, values, strict=True)
-        ]
+        pairs = zip(metrics, values, strict=True)
+        return [text for metric, value in pairs for text in metric_texts(metric, [value])]
 
     pairs = [pair(row.get("ci95")) for row in rows]
     lows, highs = texts([low for low, _ in pairs]), texts([high for _, high in pairs])
@@ -138,7 +137,7 @@ def published_sheet(document: Document) -> Sheet:
     cases = tuple(str(row.get("case") or NONE) for row in rows)
     columns = [
         Column("case", cases, prose=True, styles=repeats(cases)),
-        Column("metric", tuple(known.label for known in metrics), prose=True),
+        Column("metric", tuple(metric.label() for metric in metrics), prose=True),
         Column("published", aligned(texts(_numbers(rows, "published")))),
         Column("measured", aligned(texts(_numbers(rows, "measured")))),
         Column("95 %\ninterval", intervals(list(zip(lows, highs, strict=True))), rank=10, quiet=True),

@@ -7,16 +7,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from algorithms.clustering.clusters import Clusters
 from algorithms.clustering.comparisons import TooFewPoints
 from algorithms.clustering.modes import cluster
 from algorithms.clustering.points import Points
 from algorithms.clustering.scoring import score_clusters
 from algorithms.errors import RequestError
-from algorithms.intervals import mean_interval, normal_interval
 from hough_tui.experiments.cases import Cell, CellPart, Row, SharedDraws, SharedRun
 from hough_tui.experiments.columns.clustering import ClusterColumns
 from scenarios.entries import ClusteringEntry
@@ -45,44 +41,14 @@ class ClusteringCell(Cell[Scene, ClusteringEntry]):
         """Return columns to be filled part by part."""
         return ClusterColumns.empty(self.experiment.trials, targets=len(self.scene.targets))
 
-    def tally(self, columns: ClusterColumns, seconds: float) -> Row:
-        """Return the row of counts and errors, with intervals.
-
-        Notes
-        -----
-        The interval of `centroid_rmse` is the root of that of the mean square, by the normal
-        distribution over trials; trials without a plot have no error.
-        """
-        exact = columns.excess == 0
-        square = columns.trial_square
-        square = square[np.isfinite(square)]
-        return {
-            **self.heading(len(exact)),
-            "targets_per_trial": len(self.scene.targets),
-            "count_exact_rate": float(exact.mean()),
-            "count_exact_ci95": list(mean_interval(exact)),
-            "too_few_rate": float((columns.excess < 0).mean()),
-            "too_many_rate": float((columns.excess > 0).mean()),
-            "excess_per_trial": float(columns.excess.mean()),
-            "clusters_per_trial": float(columns.clusters.mean()),
-            "centroid_rmse": float(np.sqrt(square.mean())) if len(square) else None,
-            "centroid_rmse_ci95": _root_interval(square),
-            "trials_without_plot": int((columns.clusters == 0).sum()),
-            "parameters": self.parameters.model_dump(mode="json"),
-            "seconds_per_trial": seconds / len(exact),
-        }
+    def heading(self, trials: int) -> Row:
+        """Return the beginning of a row: what ran, and how often."""
+        # A zero-argument super() does not find the class that slots make anew.
+        return {**Cell.heading(self, trials), "targets_per_trial": len(self.scene.targets)}
 
     def shared(self, runs: tuple[SharedRun[ClusteringCell], ...]) -> SceneDraws:
         """Return the work of cells that share this one's draws."""
         return SceneDraws(runs)
-
-
-def _root_interval(square: NDArray[np.float64]) -> list[float] | None:
-    """Return the interval of the root of the mean of per-trial squares; None of fewer than two trials."""
-    if len(square) < 2:
-        return None
-    low, high = normal_interval(square)
-    return [float(np.sqrt(max(0.0, low))), float(np.sqrt(high))]
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,6 @@ from hough_tui.experiments.cases import Cell, CellPart, Row, SharedDraws, Shared
 from hough_tui.experiments.chunks.plot_sources import PlotSource, plot_source, stage_key
 from hough_tui.experiments.columns.initiation import CONTROL, TARGETS, TrialColumns
 from hough_tui.experiments.engines.process_worker import initiate_trials
-from hough_tui.experiments.tallies import tally
 from scenarios.entries import InitiatorEntry
 from scenarios.experiments import InitiationExperiment, MatchCriterion
 from scenarios.model import Scenario
@@ -68,7 +67,7 @@ class InitiationCell(Cell[Scenario, InitiatorEntry]):
         return f"{stage_key(self.clustering)} {self.entry.initiator} {self.parameters.model_dump_json()}"
 
     def heading(self, trials: int) -> Row:
-        """Return what a row says before its figures."""
+        """Return the beginning of a row: what ran, and how often."""
         # A zero-argument super() does not find the class that slots make anew.
         return {
             **Cell.heading(self, trials),
@@ -77,9 +76,9 @@ class InitiationCell(Cell[Scenario, InitiatorEntry]):
             "target_names": [target.name for target in self.scenario.targets],
         }
 
-    def blank(self) -> Row:
-        """Return the row as it is before any trial is finished."""
-        return {**self.heading(0), "criterion": self.criterion.document}
+    def settings(self) -> Row:
+        """Return the end of a row: by which settings it ran."""
+        return {"criterion": self.criterion.document, **Cell.settings(self)}
 
     @property
     def bytes_a_trial(self) -> int:
@@ -89,15 +88,6 @@ class InitiationCell(Cell[Scenario, InitiatorEntry]):
     def empty_columns(self) -> TrialColumns:
         """Return columns to be filled chunk by chunk."""
         return TrialColumns.empty(self.experiment.trials, **self.sizes)
-
-    def tally(self, columns: TrialColumns, seconds: float) -> Row:
-        """Return the row of rates with intervals; the seconds leave out the control."""
-        return {
-            **self.heading(len(columns)),
-            **tally(columns, seconds),
-            "criterion": self.criterion.document,
-            "parameters": self.parameters.model_dump(mode="json"),
-        }
 
     def shared(self, runs: tuple[SharedRun[InitiationCell], ...]) -> ScenarioDraws:
         """Return the work of cells that share this one's draws."""

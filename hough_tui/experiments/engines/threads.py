@@ -26,6 +26,7 @@ from hough_tui.experiments.cases import AnyCell, Row
 from hough_tui.experiments.columns.schema import Columns
 from hough_tui.experiments.engines.process_worker import begin_worker
 from hough_tui.experiments.plan import Plan
+from hough_tui.experiments.rows import row_of
 
 PART_SECONDS = 0.05
 """About how long a worker goes on before it looks whether the run is cancelled; one trial may last longer."""
@@ -128,7 +129,7 @@ class Job:
 
     def rows(self) -> list[Row]:
         """Return the rows of the cells that have finished trials, over these trials."""
-        return [cell.tally(columns, seconds) for cell, columns, seconds in self.finished()]
+        return [row_of(cell, columns, seconds) for cell, columns, seconds in self.finished()]
 
     def _work(self) -> None:
         try:

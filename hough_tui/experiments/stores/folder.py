@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from algorithms.errors import RequestError
 from algorithms.parameters import unknown
 from hough_tui.directories import data_directory
+from hough_tui.experiments.formats import upgraded
 from scenarios.files.marked_yaml import write
 from scenarios.files.set_files import parse_set, read_text, set_data
 from scenarios.model import ScenarioSet
@@ -137,7 +138,10 @@ class FolderStore(RunStore):
             raise RequestError(
                 f"{path}: this is no JSON: {error}; the run is damaged, remove its folder"
             ) from None
-        return document
+        try:
+            return upgraded(document)
+        except (AttributeError, KeyError, TypeError):
+            raise RequestError(f"{path}: this is no document of a run; remove its folder") from None
 
     def load(self, name: str) -> Run:
         """Return a run.

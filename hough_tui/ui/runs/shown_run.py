@@ -13,8 +13,8 @@ from algorithms.errors import RequestError
 from hough_tui.experiments.cases import AnyCell, Row
 from hough_tui.experiments.columns.schema import Columns
 from hough_tui.experiments.engines.threads import Job
-from hough_tui.experiments.plan import plan_run
-from hough_tui.experiments.results import identity, result
+from hough_tui.experiments.results import cells_of_run, columns_of_row, result
+from hough_tui.experiments.rows import row_of
 from hough_tui.experiments.stores.folder import Run
 
 CellT = TypeVar("CellT", bound=AnyCell, covariant=True)
@@ -130,7 +130,7 @@ class LiveRun(ShownRun):
             return row
         if not finished.all():
             columns = columns.select(finished)
-        return cell.tally(columns, float(self.job._seconds[index]))
+        return row_of(cell, columns, float(self.job._seconds[index]))
 
     def _finished(self, index: int) -> NDArray[np.bool_]:
         # A copy: the workers go on, and all columns must be cut by one and the same mask.
@@ -144,7 +144,7 @@ class KeptRun(ShownRun):
         self.name = name
         self.run = run
         self.rows = tuple(run.document["rows"])
-        self._cells = _cells(run)
+        self._cells = cells_of_run(run)
 
     def trials(self, index: int) -> AnyTrials:
         cell, row = self._cells[index], self.rows[index]
@@ -153,15 +153,14 @@ class KeptRun(ShownRun):
                 "this row's scenario and initiator cannot be told from the sets that were kept with the "
                 "run, so its trials cannot be drawn again"
             )
-        arrays = self.run.columns[index]
         # Runs of the first versions do not say which trials they are of.
-        if "trial" not in arrays and row["trials"] < cell.experiment.trials:
+        if "trial" not in self.run.columns[index] and row["trials"] < cell.experiment.trials:
             raise RequestError(
                 f"the run was cancelled after {row['trials']:,} of this row's "
                 f"{cell.experiment.trials:,} trials, and the version that kept it did not keep "
                 "which ones they were; run it again to open its trials"
             )
-        return RowTrials(cell, type(cell.empty_columns()).read(arrays, row["trials"]))
+        return RowTrials(cell, columns_of_row(self.run, index))
 
     def document(self) -> dict[str, Any]:
         return self.run.document
@@ -171,20 +170,3 @@ def cell_words(cell: AnyCell) -> str:
     """Return what ran in a cell: scenario, initiator, swept values."""
     swept = (f"{key} {value:g}" for key, value in cell.swept.items())
     return " · ".join((*cell.names.values(), *swept))
-
-
-def _cells(run: Run) -> list[AnyCell | None]:
-    """Return the cell of each row, None where the sets do not hold it.
-
-    The rows are those cells, in their order, that had finished trials.
-    """
-    rows = run.document["rows"]
-    try:
-        cells = iter(plan_run(run.sets).cells)
-    except RequestError:
-        return [None] * len(rows)
-    found: list[AnyCell | None] = []
-    for row in rows:
-        wanted = identity(row)
-        found.append(next((cell for cell in cells if identity(cell.blank()) == wanted), None))
-    return found

@@ -15,11 +15,11 @@ from textual.screen import ModalScreen
 from textual.widgets import Footer, Static
 
 from hough_tui.directories import data_directory
+from hough_tui.experiments.metrics.registry import leading_metric
 from hough_tui.experiments.stores.folder import Run
-from hough_tui.reports.comparison import METRICS, compare, comparison_sheet
+from hough_tui.reports.comparison import comparable, compare, comparison_sheet
 from hough_tui.reports.documents import sheet_markdown
 from hough_tui.reports.layout import Sheet
-from hough_tui.reports.metrics import leading_metric, metric
 from hough_tui.ui.widgets.rate_grid import RateGrid
 from scenarios.files.atomic import replace_file
 
@@ -59,8 +59,8 @@ class ComparisonScreen(ModalScreen[None]):
         super().__init__()
         self._runs = tuple(runs)
         rows = [row for _, run in self._runs for row in run.document["rows"]]
-        self._metrics = [key for key in METRICS if any(key in row for row in rows)] or [METRICS[0]]
-        self._metric = leading_metric(rows[0]) if rows else METRICS[0]
+        self._metric = leading_metric(rows)
+        self._metrics = comparable(rows) or [self._metric]
         self._sheet = Sheet("", ())
 
     def compose(self) -> ComposeResult:
@@ -78,7 +78,8 @@ class ComparisonScreen(ModalScreen[None]):
 
     def action_metric(self) -> None:
         """Compare the next metric."""
-        self._metric = self._metrics[(self._metrics.index(self._metric) + 1) % len(self._metrics)]
+        here = self._metrics.index(self._metric) if self._metric in self._metrics else -1
+        self._metric = self._metrics[(here + 1) % len(self._metrics)]
         self._show()
 
     def action_copy(self) -> None:
@@ -109,13 +110,9 @@ class ComparisonScreen(ModalScreen[None]):
     def _show(self) -> None:
         self._sheet = comparison_sheet(compare(self._runs, self._metric))
         identifying = next(
-            (
-                index
-                for index, column in enumerate(self._sheet.columns)
-                if column.heading.endswith(metric(self._metric).label)
-            ),
+            (index for index, column in enumerate(self._sheet.columns) if column.key == self._metric.key),
             0,
         )
         self.query_one(RateGrid).show_columns(self._sheet.columns, identifying)
         self.query_one(Static).update("\n".join(self._sheet.notes))
-        self.query_one(Vertical).border_title = f"{metric(self._metric).label} of {len(self._runs)} runs"
+        self.query_one(Vertical).border_title = f"{self._metric.label()} of {len(self._runs)} runs"

@@ -17,7 +17,7 @@ from algorithms.clustering.clusters import NONE
 from hough_tui.recorded.clustering import document, plot_rows
 from hough_tui.reports.clusters import Document, step_sheet, verdict_words
 from hough_tui.reports.documents import csv_text
-from hough_tui.reports.metrics import field_name
+from hough_tui.reports.field_names import field_name
 from hough_tui.reports.numerals import as_given
 from hough_tui.ui.copying import copy
 from hough_tui.ui.drawing.shortening import Part

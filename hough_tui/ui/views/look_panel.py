@@ -18,7 +18,7 @@ from textual.widgets import Static
 
 from algorithms.hough.inspection import columns_of, voters
 from hough_tui.reports.documents import track_csv
-from hough_tui.reports.metrics import field_name
+from hough_tui.reports.field_names import field_name
 from hough_tui.reports.numerals import as_given
 from hough_tui.ui.copying import copy
 from hough_tui.ui.drawing.shortening import Part

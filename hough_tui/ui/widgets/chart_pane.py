@@ -13,10 +13,10 @@ from textual.widgets import Select
 from algorithms.errors import RequestError
 from hough_tui.experiments.cases import Row
 from hough_tui.experiments.columns.initiation import TrialColumns
-from hough_tui.experiments.tallies import false_ratio
+from hough_tui.experiments.metrics.metric import Sample
+from hough_tui.experiments.metrics.registry import leading_metric, metric
 from hough_tui.reports.charts import rate_chart
-from hough_tui.reports.metrics import KNOWN
-from hough_tui.reports.numerals import number
+from hough_tui.reports.metric_columns import measured
 from hough_tui.ui.runs.shown_run import ShownRun, cell_words
 from hough_tui.ui.widgets.rate_plot import RatePlot
 from hough_tui.ui.widgets.trial_chart import trial_chart
@@ -36,7 +36,7 @@ class ChartPane(Vertical):
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
-        self.metric = next(iter(KNOWN))
+        self.metric = leading_metric(()).key
         self._metric_before = self.metric
         self._run: ShownRun | None = None
         self._rows: tuple[Row, ...] = ()
@@ -55,7 +55,7 @@ class ChartPane(Vertical):
         metrics = self._metrics()
         if metrics and self.metric not in (*metrics, BY_TRIAL):
             self.metric = metrics[0]
-        options = [(KNOWN[key].label, key) for key in metrics]
+        options = [(metric(key).label(), key) for key in metrics]
         if any("initiator" in row for row in self._rows) and options:
             options.append(("false % by trial, of the row chosen", BY_TRIAL))
         if options != self._offered:
@@ -119,7 +119,7 @@ class ChartPane(Vertical):
                 self.query_one(Select).value = self.metric
 
     def _metrics(self) -> list[str]:
-        return [key for key in KNOWN if any(number(row.get(key)) is not None for row in self._rows)]
+        return [metric.key for metric in measured(self._rows)]
 
     def _wanted(self) -> object:
         """Return what tells the chart from another one of the same rows."""
@@ -130,13 +130,13 @@ class ChartPane(Vertical):
         return self.metric, self._rows[self._index]["set"], self._rows[self._index]["experiment"]
 
 
-def _rates_drawn(rows: Sequence[Row], metric: str, width: int, height: int) -> str:
-    return rate_chart(rows, metric, width, height, True)
+def _rates_drawn(rows: Sequence[Row], key: str, width: int, height: int) -> str:
+    return rate_chart(rows, key, width, height, True)
 
 
 def _trials_drawn(run: ShownRun, index: int, width: int, height: int) -> str:
     trials = run.trials(index)
     if not isinstance(trials.columns, TrialColumns):
         raise RequestError("this row is of clustering: its trials have clusters, and no tracks")
-    ratio = false_ratio(trials.columns)
+    ratio = metric("false_track_ratio").per_trial(Sample(trials.cell, trials.columns, 0.0))
     return trial_chart(cell_words(trials.cell), trials.numbers, ratio, width, height)

@@ -14,12 +14,15 @@ from textual.widgets import DataTable
 
 from hough_tui.reports.layout import REPEATED, Column
 from hough_tui.reports.numerals import NONE
-from hough_tui.reports.rates import BY_TARGET, SUCCESS, rate_sheets
+from hough_tui.reports.rates import rate_sheets
 from hough_tui.ui.widgets.vim_table import VimTable, cell_text
 
 Row = Mapping[str, Any]
 
 LEADING_NUMBER = re.compile(r"[-+]?\d[\d,]*(\.\d+)?(e-?\d+)?")
+SUCCESS, BY_TARGET = "success_rate", "success_by_target"
+"""Keys of the columns that stand beside each other where success by target goes first."""
+
 ARROWS = {False: "▲", True: "▼"}
 
 
@@ -210,9 +213,9 @@ def rate_columns(rows: Sequence[Row]) -> list[Column]:
 
 def with_targets_first(columns: Sequence[Column]) -> list[Column]:
     """Return columns with those of success by target beside that of success."""
-    targets = [column for column in columns if column.called == BY_TARGET]
-    others = [column for column in columns if column.called != BY_TARGET]
-    place = 1 + next((index for index, column in enumerate(others) if column.name == SUCCESS), -1)
+    targets = [column for column in columns if column.key == BY_TARGET]
+    others = [column for column in columns if column.key != BY_TARGET]
+    place = 1 + next((index for index, column in enumerate(others) if column.key == SUCCESS), -1)
     return [*others[:place], *targets, *others[place:]]
 
 

@@ -12,7 +12,7 @@ from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Button, Input, Select, Static
 
-from hough_tui.reports.metrics import field_name
+from hough_tui.reports.field_names import field_name
 from hough_tui.reports.numerals import as_given
 from hough_tui.ui.runs.run_controller import Asked
 from hough_tui.ui.widgets.run_field import RunField

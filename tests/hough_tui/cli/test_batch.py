@@ -14,22 +14,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hough_tui.experiments.metrics.initiation import INITIATION
+from hough_tui.experiments.metrics.registry import metrics_of
 from hough_tui.experiments.stores.folder import FolderStore
 
 PROJECT = Path(__file__).parents[3]
 
 DOCUMENT = {"sets", "seed", "version", "rows"}
 ROW = {
-    "set", "scenario", "initiator", "swept", "trials", "success_rate", "success_ci95", "success_by_target",
-    "false_track_ratio", "false_tracks_per_trial", "duplicates_per_trial", "tracks_per_trial",
-    "success_control", "trials_without_track", "false_track_ratio_ci95", "criterion", "theta_rmse_deg",
-    "rho_rmse", "seconds_per_trial",
+    "set", "scenario", "initiator", "swept", "trials", "success_rate", "success_rate_ci95",
+    "success_by_target", "false_track_ratio", "false_tracks_per_trial", "duplicates_per_trial",
+    "tracks_per_trial", "success_control", "trials_without_track", "false_track_ratio_ci95", "criterion",
+    "theta_rmse_deg", "rho_rmse", "seconds_per_trial",
 }  # fmt: skip
-FURTHER = {"complete"}
-FURTHER_IN_ROW = {
-    "experiment", "seed", "unit", "success_control_ci95", "votes_outside_per_trial",
-        "pure_track_ratio", "effort_per_trial", "parameters", "target_names", "ignores_z",
-}  # fmt: skip
+FURTHER = {"complete", "format"}
+SETTINGS = {"experiment", "seed", "unit", "parameters", "target_names", "ignores_z"}
+FIGURES = {key for metric in metrics_of(INITIATION) for key in (metric.key, metric.interval_key) if key}
 
 SET = """\
 schema: 1
@@ -78,12 +78,13 @@ def test_the_document_has_the_fields_that_scripts_rely_on(cli):
     assert document["sets"] == ["course-report"]
     assert document["seed"] == 7
     assert document["version"]
+    assert document["format"] == 2
     rows = document["rows"]
     assert len(rows) == 6 + 6 + 3
     for row in rows:
-        assert row.keys() == ROW | FURTHER_IN_ROW
+        assert row.keys() == ROW | SETTINGS | FIGURES
         assert (row["set"], row["trials"]) == ("course-report", 30)
-        low, high = row["success_ci95"]
+        low, high = row["success_rate_ci95"]
         assert 0 <= low <= row["success_rate"] <= high <= 1
         assert len(row["success_by_target"]) == 2
         assert np.mean(row["success_by_target"]) == pytest.approx(row["success_rate"])
@@ -173,7 +174,9 @@ def test_the_csv_file_has_the_rows_of_the_document(cli, small, tmp_path):
         assert line["swept.clutter[0].rate"] == (str(row["swept"].get("clutter[0].rate", "")))
         for key in ("success_rate", "false_track_ratio", "tracks_per_trial", "seconds_per_trial"):
             assert float(line[key]) == row[key]
-        assert [float(line["success_ci95_low"]), float(line["success_ci95_high"])] == row["success_ci95"]
+        assert [float(line["success_rate_ci95_low"]), float(line["success_rate_ci95_high"])] == row[
+            "success_rate_ci95"
+        ]
         assert float(line["success_by_target.0"]) == row["success_by_target"][0]
     assert path.read_bytes().count(b"\r") == 0
 

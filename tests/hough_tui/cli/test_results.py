@@ -7,9 +7,6 @@ import re
 
 import pytest
 
-from hough_tui.cli.options import ComparedMetric
-from hough_tui.reports.comparison import METRICS
-
 SET = """\
 schema: 1
 name: small
@@ -40,10 +37,6 @@ def kept(cli, tmp_path):
         path.write_text(text)
         names.append(re.search(r"kept as (\S+)", cli("batch", path)[2]).group(1))
     return names
-
-
-def test_the_metrics_to_choose_from_are_those_that_can_be_compared():
-    assert tuple(ComparedMetric) == METRICS
 
 
 def test_runs_are_compared_row_by_row(cli, kept, monkeypatch):
@@ -79,6 +72,10 @@ def test_runs_are_compared_row_by_row(cli, kept, monkeypatch):
     other = json.loads(cli("results", "compare", *kept, "--metric", "false_track_ratio", "--json")[1])
     assert other["metric"] == "false_track_ratio"
     assert other["rows"][0]["values"] != document["rows"][0]["values"]
+    counts = json.loads(cli("results", "compare", *kept, "--metric", "false_tracks_per_trial", "--json")[1])
+    first, second = counts["rows"][0]["values"]
+    low, high = counts["rows"][0]["differences"][1]["ci95"]
+    assert low <= second - first <= high
 
 
 def test_runs_of_clusterings_are_compared_by_their_exact_counts(cli):
@@ -114,6 +111,11 @@ def test_a_run_is_exported_by_the_ending_of_the_file(cli, kept, tmp_path):
     [
         (("compare", "A"), "there is one run only"),
         (("compare", "A", "A"), "is given twice"),
+        (("compare", "A", "B", "--metric", "sucess_rate"), "did you mean 'success_rate'"),
+        (("compare", "A", "B", "--metric", "seconds_per_trial"), "seconds_per_trial has no interval"),
+        (("show", "A", "--columns", "success_rate,nothing"), "--columns: there is no metric 'nothing'"),
+        (("show", "A", "--columns", ","), "no metric is named"),
+        (("show", "A", "--metric", "success_by_target"), "there is no metric 'success_by_target'"),
         (("compare", "A", "nowhere"), "there is no run 'nowhere'"),
         (("compare", "small", "A"), "fits 2 runs"),
         (("export", "A", "run.txt"), "run.txt: the name must end in one of .csv, .json, .md"),
@@ -123,7 +125,8 @@ def test_a_run_is_exported_by_the_ending_of_the_file(cli, kept, tmp_path):
 )
 def test_what_cannot_be_done_is_said(cli, kept, tmp_path, monkeypatch, arguments, said):
     monkeypatch.chdir(tmp_path)
-    status, out, err = cli("results", *(kept[0] if given == "A" else given for given in arguments))
+    names = {"A": kept[0], "B": kept[1]}
+    status, out, err = cli("results", *(names.get(argument, argument) for argument in arguments))
     assert (status, out) == (2, "")
     assert said in err
     assert "Traceback" not in err

@@ -3,6 +3,8 @@ import pytest
 
 from algorithms.errors import RequestError
 from hough_tui.experiments.engines.threads import Job
+from hough_tui.experiments.metrics.metric import Sample
+from hough_tui.experiments.metrics.registry import METRICS
 from hough_tui.published.comparison import (
     TABLES,
     compare,
@@ -11,7 +13,6 @@ from hough_tui.published.comparison import (
     plan_table,
     published_table,
 )
-from hough_tui.published.tables import MEASURES
 from scenarios.files.set_files import load_set
 
 TRIALS = 600
@@ -57,12 +58,12 @@ def measured(name, trials):
     job = Job(plan_table(table, trials), 2)
     job.wait()
     found = {
-        (cell.experiment.name, cell.entry.name, tuple(cell.swept.items())): columns
-        for cell, columns, _ in job.finished()
+        (cell.experiment.name, cell.entry.name, tuple(cell.swept.items())): Sample(cell, columns, seconds)
+        for cell, columns, seconds in job.finished()
     }
     spreads = [
         np.nanstd(
-            MEASURES[entry.metric].values(found[entry.experiment, entry.method, tuple(entry.swept.items())])
+            METRICS[entry.metric].per_trial(found[entry.experiment, entry.method, tuple(entry.swept.items())])
         )
         for entry in table.entries
     ]
@@ -175,7 +176,7 @@ def test_every_figure_has_its_cell_in_a_bundled_set():
             assert entry.world is None or entry.world in [found.name for found in worlds]
             assert set(entry.swept) == set(experiment.sweep)
             assert all(entry.swept[key] in experiment.sweep[key] for key in entry.swept)
-            assert entry.metric in MEASURES
+            assert entry.metric in METRICS
 
 
 def test_counts_and_centroids_by_kind_of_scene():

@@ -20,7 +20,7 @@ def _row(initiator: str = "standard", scans: int = 5, success: float = 0.9, **gi
         "trials": 1000,
         "seed": 7,
         "success_rate": success,
-        "success_ci95": [success - 0.02, success + 0.01],
+        "success_rate_ci95": [success - 0.02, success + 0.01],
         "success_by_target": [success, success],
         "false_track_ratio": 0.71,
         "false_track_ratio_ci95": [0.69, 0.73],
@@ -30,6 +30,7 @@ def _row(initiator: str = "standard", scans: int = 5, success: float = 0.9, **gi
         "success_control": 0.02,
         "success_control_ci95": [0.01, 0.03],
         "trials_without_track": 0,
+        "no_track_rate": 0.0,
         "criterion": {"rho": 3.0, "theta_deg": None},
         "theta_rmse_deg": 0.6,
         "rho_rmse": 0.2,
@@ -59,6 +60,7 @@ def rows() -> list[Row]:
             scenario=scenario,
             swept={"scenario.scans": scans, "initiator.grid.theta_bins": 90, "clutter.0.rate": 12.5},
             trials_without_track=120,
+            no_track_rate=0.12,
             votes_outside_per_trial=3.2,
             criterion={"rho": 3.0, "theta_deg": 6.0},
         )
@@ -71,7 +73,7 @@ def rows() -> list[Row]:
         _row(
             experiment="nulls",
             swept={},
-            success_ci95=None,
+            success_rate_ci95=None,
             success_by_target=None,
             success_control=None,
             seconds_per_trial=None,

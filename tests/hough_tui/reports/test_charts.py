@@ -51,7 +51,7 @@ def test_colour_changes_nothing_but_the_colour(rows):
 
 
 def test_intervals_are_drawn(row):
-    rows = [row(scans=scans, success_ci95=[0.2, 0.99]) for scans in (5, 10)]
+    rows = [row(scans=scans, success_rate_ci95=[0.2, 0.99]) for scans in (5, 10)]
     text = rate_chart(rows, "success_rate", 80, 20, colour=False)
     columns = [line.index("●") for line in text.split("\n") if "●" in line]
     above_axis = [line for line in text.split("\n") if len(line) > 5]
@@ -91,7 +91,11 @@ def test_wide_sweeps_are_logarithmic(row):
 def test_rows_without_a_value_are_left_out(rows, row):
     assert "no row has a value" in rate_chart(rows[-1:], "success_rate", 80, 20, colour=False)
     assert "no row has a value" in rate_chart([], "success_rate", 80, 20, colour=False)
-    bad = [row(scans=5), row(scans=10, success_rate=float("nan")), row(scans=15, success_ci95=[None, 1.0])]
+    bad = [
+        row(scans=5),
+        row(scans=10, success_rate=float("nan")),
+        row(scans=15, success_rate_ci95=[None, 1.0]),
+    ]
     assert rate_chart(bad, "success_rate", 80, 20, colour=False).count("●") == 2
 
 

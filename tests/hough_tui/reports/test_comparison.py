@@ -7,10 +7,11 @@ import pytest
 
 from algorithms.intervals import mean_interval, wilson
 from hough_tui.experiments.engines.threads import Job
+from hough_tui.experiments.metrics.registry import METRICS
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import result
 from hough_tui.experiments.stores.folder import Run
-from hough_tui.reports.comparison import METRICS, compare, comparison_sheet, difference
+from hough_tui.reports.comparison import comparable, compare, comparison_sheet, difference
 from hough_tui.reports.documents import sheet_markdown
 from scenarios.files.set_files import load_set
 
@@ -22,8 +23,8 @@ def run():
     return result(job)
 
 
-def compared(runs, key=METRICS[0]):
-    return comparison_sheet(compare(runs, key))
+def compared(runs, key="success_rate"):
+    return comparison_sheet(compare(runs, METRICS[key]))
 
 
 def column(sheet, heading):
@@ -65,9 +66,12 @@ def test_intervals_hold_the_true_difference_as_often_as_they_say(shared):
 
 
 def test_a_run_does_not_differ_from_itself(run):
-    for key in METRICS[:2]:
-        sheet = compared([("one", run), ("two", run)], key)
-        assert column(sheet, "B − A points") == ["0.0"] * 3
+    metrics = comparable(run.document["rows"])
+    assert {"success_rate", "false_tracks_per_trial", "theta_rmse_deg"} <= {one.key for one in metrics}
+    for metric in metrics:
+        sheet = compared([("one", run), ("two", run)], metric.key)
+        (values,) = (one for one in sheet.columns if one.name.startswith("B − A") and one.cells)
+        assert {float(cell) for cell in values.cells} == {0.0}
         assert column(sheet, "beyond chance") == [""] * 3
         assert any("0 of 3 differences" in note for note in sheet.notes)
 
@@ -75,7 +79,7 @@ def test_a_run_does_not_differ_from_itself(run):
 def test_a_metric_that_the_rows_have_not_is_said_to_be_missing(run):
     sheet = compared([("one", run), ("two", run)], "count_exact_rate")
     assert column(sheet, "B − A points") == ["–"] * 3
-    assert any("Nothing here has a rate of exact counts" in note for note in sheet.notes)
+    assert any("Nothing here has a figure of exact counts" in note for note in sheet.notes)
 
 
 def test_pairs_of_the_same_draws_are_told_apart_better(run):
@@ -86,7 +90,7 @@ def test_pairs_of_the_same_draws_are_told_apart_better(run):
         changed[:30] = False
         per_trial = changed.mean(axis=1)
         row["success_rate"] = float(per_trial.mean())
-        row["success_ci95"] = list(mean_interval(per_trial))
+        row["success_rate_ci95"] = list(mean_interval(per_trial))
         columns.append({**found, "found": changed})
     worse = Run(worse.sets, worse.document, tuple(columns))
     paired = compared([("one", run), ("two", worse)])

@@ -31,14 +31,14 @@ def test_csv_keeps_every_number(rows):
         assert found["initiator"] == row["initiator"]
         for key, value in row["swept"].items():
             assert float(found[f"swept.{key}"]) == value
-        if row["success_ci95"]:
-            low, high = row["success_ci95"]
-            assert float(found["success_ci95_low"]) == low
-            assert float(found["success_ci95_high"]) == high
+        if row["success_rate_ci95"]:
+            low, high = row["success_rate_ci95"]
+            assert float(found["success_rate_ci95_low"]) == low
+            assert float(found["success_rate_ci95_high"]) == high
             assert float(found["success_by_target.1"]) == row["success_by_target"][1]
             assert float(found["duplicates_per_trial"]) == row["duplicates_per_trial"]
         else:
-            assert found["success_rate"] == found["success_ci95_low"] == ""
+            assert found["success_rate"] == found["success_rate_ci95_low"] == ""
 
 
 def test_csv_columns_of_one_key_stay_together(rows):

@@ -3,7 +3,6 @@ from __future__ import annotations
 import pytest
 
 from hough_tui.reports.layout import broken, enumerated
-from hough_tui.reports.metrics import metric
 from hough_tui.reports.numerals import (
     aligned,
     as_given,
@@ -77,8 +76,3 @@ def test_broken_at_its_joints():
 def test_enumerated():
     assert enumerated(["a", "b", "c"]) == "a, b and c"
     assert enumerated(["a"]) == "a"
-
-
-def test_unknown_metrics_go_by_their_name():
-    assert metric("found_rate").label == "found rate %"
-    assert metric("gate_rmse").label == "gate rmse"

@@ -224,7 +224,7 @@ def test_marked_runs_are_compared(kept):
             )
         assert "differences" in texts(screen)
         assert kept[0] in texts(screen)
-        await user.pilot.press("m")
+        await user.pilot.press("m", "m")
         assert "A false %" in [column.name for column in grid._shown]
         await user.pilot.press("y")
         await user.until(lambda: user.app.clipboard)

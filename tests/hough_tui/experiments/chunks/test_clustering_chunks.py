@@ -13,12 +13,13 @@ from algorithms.errors import RequestError
 from algorithms.intervals import wilson
 from hough_tui.experiments.columns.clustering import ClusterColumns
 from hough_tui.experiments.engines.threads import Job
+from hough_tui.experiments.metrics.registry import leading_metric
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import result
+from hough_tui.experiments.rows import row_of
 from hough_tui.experiments.stores.folder import FolderStore
 from hough_tui.reports.charts import rate_chart
 from hough_tui.reports.documents import csv_text, markdown_text
-from hough_tui.reports.metrics import leading_metric
 from hough_tui.reports.rates import rate_sheets
 from hough_tui.reports.series import rate_series
 from scenarios.files.set_files import load_set, parse_set
@@ -75,13 +76,13 @@ def test_rows_by_hand():
     cell, columns = cell_of(), ClusterColumns.empty(5, targets=2)
     columns.excess[:] = [0, 0, 1, -1, -2]
     columns.squared_error[:] = [[1, 3], [0, 0], [4, 4], [9, 7], [np.nan, np.nan]]
-    row = cell.tally(columns, seconds=0.01)
+    row = row_of(cell, columns, seconds=0.01)
     assert (row["set"], row["experiment"], row["scene"], row["clustering"]) == (
         *("swept", "stray"),
         *("pair", "recommended"),
     )
     assert row["count_exact_rate"] == pytest.approx(0.4)
-    assert row["count_exact_ci95"] == pytest.approx(list(wilson(0.4, 5)))
+    assert row["count_exact_rate_ci95"] == pytest.approx(list(wilson(0.4, 5)))
     assert (row["too_few_rate"], row["too_many_rate"]) == (0.4, 0.2)
     assert row["excess_per_trial"] == pytest.approx(-0.4)
     assert row["clusters_per_trial"] == pytest.approx(1.6)
@@ -96,7 +97,7 @@ def test_rows_by_hand():
 def test_without_targets_there_is_no_error():
     columns = ClusterColumns.empty(3)
     columns.excess[:] = [0, 2, 0]
-    row = cell_of(0).tally(columns, seconds=1.0)
+    row = row_of(cell_of(0), columns, seconds=1.0)
     assert (row["centroid_rmse"], row["centroid_rmse_ci95"]) == (None, None)
     assert row["trials_without_plot"] == 2
     assert row["count_exact_rate"] == pytest.approx(2 / 3)
@@ -141,8 +142,8 @@ def test_rows_become_tables_charts_and_files(job):
     assert "| recommended |" in markdown_text(rows).replace("  ", "")
     table = list(csv.DictReader(io.StringIO(csv_text(rows))))
     assert [row["swept.scene.interference"] for row in table] == ["0", "40", "0", "40"]
-    assert float(table[1]["count_exact_ci95_low"]) == rows[1]["count_exact_ci95"][0]
-    metric = leading_metric(rows[0])
+    assert float(table[1]["count_exact_rate_ci95_low"]) == rows[1]["count_exact_rate_ci95"][0]
+    metric = leading_metric(rows).key
     series = rate_series(rows, metric)
     assert (series.swept, [one.label for one in series.series]) == (
         "interference",

@@ -1,3 +1,4 @@
+import json
 import os
 
 import numpy as np
@@ -84,3 +85,19 @@ def test_a_folder_that_cannot_be_written_is_an_operating_system_error(run, tmp_p
     tmp_path.chmod(0o500)
     with pytest.raises(OSError, match="denied"):
         FolderStore(tmp_path / "runs").add(run)
+
+
+def test_documents_of_format_1_are_read_as_those_of_today(run, tmp_path):
+    store = FolderStore(tmp_path)
+    name = store.add(run)
+    path = tmp_path / name / "result.json"
+    old = json.loads(path.read_text())
+    del old["format"]
+    for row in old["rows"]:
+        row["success_ci95"] = row.pop("success_rate_ci95")
+        del row["no_track_rate"]
+    path.write_text(json.dumps(old))
+    assert store.document(name)["rows"] == json.loads(json.dumps(run.document["rows"]))
+    path.write_text('["no document"]')
+    with pytest.raises(RequestError, match="no document of a run"):
+        store.document(name)

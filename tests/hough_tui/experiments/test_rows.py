@@ -4,6 +4,7 @@ import pytest
 from algorithms.intervals import wilson
 from hough_tui.experiments.columns.initiation import TrialColumns
 from hough_tui.experiments.plan import plan_run
+from hough_tui.experiments.rows import row_of
 from scenarios.files.set_files import load_set
 
 
@@ -22,7 +23,7 @@ def test_rates_by_hand(cell):
     columns.rho_error[:] = [[0.3, -0.3], [0.6, np.nan], [np.nan, np.nan], [0, 0]]
     columns.votes_outside[:] = [0, 8, 0, 0]
     columns.control_found[0, 0] = True
-    row = cell.tally(columns, seconds=0.008)
+    row = row_of(cell, columns, seconds=0.008)
     assert row["success_rate"] == pytest.approx(5 / 8)
     assert row["success_by_target"] == pytest.approx([0.75, 0.5])
     assert row["target_names"] == ["rising", "falling"]
@@ -36,15 +37,15 @@ def test_rates_by_hand(cell):
     assert row["rho_rmse"] == pytest.approx(np.sqrt((0.09 + 0.09 + 0.36) / 5))
     assert row["votes_outside_per_trial"] == 2.0
     assert row["seconds_per_trial"] == pytest.approx(0.002)
-    low, high = row["success_ci95"]
+    low, high = row["success_rate_ci95"]
     assert 0 <= low < 5 / 8 < high <= 1
 
 
 def test_one_target_gives_the_interval_of_wilson(cell):
     columns = TrialColumns.empty(50, targets=1)
     columns.found[:31] = True
-    row = cell.tally(columns, seconds=1.0)
-    assert row["success_ci95"] == pytest.approx(wilson(31 / 50, 50))
+    row = row_of(cell, columns, seconds=1.0)
+    assert row["success_rate_ci95"] == pytest.approx(wilson(31 / 50, 50))
     assert row["success_control"] is None
 
 
@@ -53,13 +54,13 @@ def test_targets_that_are_found_together_widen_the_interval(cell):
     apart.found[:200, 0] = True
     apart.found[100:300, 1] = True
     together.found[:200] = True
-    widths = [np.ptp(cell.tally(columns, 1.0)["success_ci95"]) for columns in (apart, together)]
+    widths = [np.ptp(row_of(cell, columns, 1.0)["success_rate_ci95"]) for columns in (apart, together)]
     assert widths[1] == pytest.approx(widths[0] * np.sqrt(2), rel=0.02)
 
 
 def test_without_targets_there_is_no_success_rate(cell):
-    row = cell.tally(TrialColumns.empty(3), 1.0)
+    row = row_of(cell, TrialColumns.empty(3), 1.0)
     assert row["success_rate"] is None
-    assert row["success_ci95"] is None
+    assert row["success_rate_ci95"] is None
     assert row["success_by_target"] == []
     assert row["theta_rmse_deg"] is None
