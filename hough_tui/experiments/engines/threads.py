@@ -10,11 +10,13 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures import wait as wait_for
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -30,6 +32,9 @@ from hough_tui.experiments.rows import row_of
 
 PART_SECONDS = 0.05
 """About how long a worker goes on before it looks whether the run is cancelled; one trial may last longer."""
+
+THREADS = "chunks"
+"""Prefix of the names of the workers' threads."""
 
 LEAST_SECONDS = 1e-6
 """The least time that a part is taken to last, where the clock is coarse."""
@@ -79,7 +84,7 @@ class Job:
         self._cold = list(plan.draws)
         # Processes come first: starting them once threads are busy is slow, and unsafe by fork.
         self._processes = _processes(plan, self.workers)
-        self._threads = ThreadPoolExecutor(self.workers, thread_name_prefix="chunks")
+        self._threads = ThreadPoolExecutor(self.workers, thread_name_prefix=THREADS)
         self._futures: list[Future[None]] = [self._threads.submit(self._work) for _ in range(self.workers)]
 
     def cancel(self) -> None:
@@ -115,17 +120,33 @@ class Job:
         """Whether every trial of every cell is done."""
         return bool((self.progress.done == self.progress.total).all())
 
+    def finished_trials(self, index: int) -> tuple[Columns, float] | None:
+        """Return the columns of a cell's finished trials and their seconds; None before the first.
+
+        Any thread may ask, at any time.
+        """
+        # The workers go on meanwhile: the mask must be the same for every column.
+        done, seconds = self._finished[index].copy(), float(self._seconds[index])
+        if not done.any():
+            return None
+        columns = self.columns[index]
+        return (columns if done.all() else columns.select(done)), seconds
+
     def finished(self) -> Iterator[tuple[AnyCell, Columns, float]]:
         """Yield the cells that have finished trials, with the columns of these and their seconds."""
-        for cell, columns, finished, seconds in zip(
-            self.plan.cells, self.columns, self._finished, self._seconds, strict=True
-        ):
-            # The workers go on meanwhile: the mask must be the same for every column.
-            done = finished.copy()
-            if done.all():
-                yield cell, columns, float(seconds)
-            elif done.any():
-                yield cell, columns.select(done), float(seconds)
+        for index, cell in enumerate(self.plan.cells):
+            trials = self.finished_trials(index)
+            if trials is not None:
+                yield cell, *trials
+
+    def give_way(self, niceness: int) -> None:
+        """Put the workers behind the threads that a user waits for, where threads have priorities."""
+        if sys.platform != "linux":
+            return
+        for thread in threading.enumerate():
+            if thread.name.startswith(THREADS) and thread.native_id is not None:
+                with suppress(OSError):  # it may have come to its end
+                    os.setpriority(os.PRIO_PROCESS, thread.native_id, niceness)
 
     def rows(self) -> list[Row]:
         """Return the rows of the cells that have finished trials, over these trials."""

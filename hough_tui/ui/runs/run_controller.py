@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import sys
 import threading
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 
 from algorithms.errors import RequestError
@@ -33,17 +30,17 @@ NICENESS = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class RunRequest:
     """What is to run.
 
     Attributes
     ----------
-    given : the set
+    scenario_set : the set
     experiments : names; none: all
     trials, seed : in place of the experiments' own, where given
     """
 
-    given: ScenarioSet
+    scenario_set: ScenarioSet
     experiments: tuple[str, ...] = ()
     trials: int | None = None
     seed: int | None = None
@@ -95,8 +92,8 @@ class Running:
     tell : is given what happens, in the worker's thread
     """
 
-    def __init__(self, asked: Asked, tell: Callable[[Event], None]) -> None:
-        self._asked, self._tell = asked, tell
+    def __init__(self, request: RunRequest, tell: Callable[[Event], None]) -> None:
+        self._request, self._tell = request, tell
         self._stopped = threading.Event()
         self._is_leaving = False
         self._job: Job | None = None
@@ -117,9 +114,12 @@ class Running:
         """Do all of it; the body of the worker's thread. What goes wrong is told, not raised."""
         live: LiveRun | None = None
         try:
-            asked = self._asked
+            request = self._request
             plan = plan_run(
-                [asked.given], experiments=asked.experiments, trials=asked.trials, seed=asked.seed
+                [request.scenario_set],
+                experiments=request.experiments,
+                trials=request.trials,
+                seed=request.seed,
             )
             if self._stopped.is_set():
                 self._tell(Ended())
@@ -127,7 +127,7 @@ class Running:
             self._job = Job(plan)
             if self._stopped.is_set():  # it was set before there was a job to cancel
                 self._job.cancel()
-            _give_way()
+            self._job.give_way(NICENESS)
             live = LiveRun(self._job)
             self._tell(Started(live))
             self._fill(live)
@@ -159,21 +159,11 @@ class Running:
         return Ended(live.rows, job.seconds, job.is_complete, kept_as, problem)
 
 
-def _give_way() -> None:
-    """Put the engine's threads behind the one of the screen, which else waits its turn among them."""
-    if sys.platform != "linux":  # elsewhere threads have no priority of their own that could be set so
-        return
-    for thread in threading.enumerate():
-        if thread.name.startswith("chunks") and thread.native_id is not None:
-            with suppress(OSError):  # it may have come to its end
-                os.setpriority(os.PRIO_PROCESS, thread.native_id, NICENESS)
-
-
 def keep(live: LiveRun) -> tuple[str | None, str | None]:
     """Keep a run; return its name, or why it could not be kept."""
     store = FolderStore()
     try:
-        return store.add(live.found()), None
+        return store.add(live.whole()), None
     except OSError as error:
         return None, (
             f"The run could not be kept in {store.folder}: {error.strerror or error}. "

@@ -82,10 +82,10 @@ class LiveRun(ShownRun):
 
     def __init__(self, job: Job) -> None:
         self.job = job
-        self.name = "+".join(given.name for given in job.plan.sets)
+        self.name = "+".join(scenario_set.name for scenario_set in job.plan.sets)
         self.rows = tuple(cell.blank() for cell in job.plan.cells)
         self.is_over = False
-        self._found: Run | None = None
+        self._run: Run | None = None
 
     def snapshot(self) -> tuple[Row, ...]:
         """Return the rows over the trials that are finished by now.
@@ -100,16 +100,16 @@ class LiveRun(ShownRun):
         )
 
     def trials(self, index: int) -> AnyTrials:
-        cell = self.job.plan.cells[index]
-        finished, columns = self._finished(index), self.job.columns[index]
-        if not finished.any():
+        trials = self.job.finished_trials(index)
+        if trials is None:
             raise RequestError("no trial of this row is finished yet")
-        return RowTrials(cell, columns if finished.all() else columns.select(finished))
+        columns, _ = trials
+        return RowTrials(self.job.plan.cells[index], columns)
 
     def document(self) -> dict[str, Any]:
-        return self.found().document
+        return self.whole().document
 
-    def found(self) -> Run:
+    def whole(self) -> Run:
         """Return the run as it is kept; it may take long.
 
         Raises
@@ -119,22 +119,13 @@ class LiveRun(ShownRun):
         """
         if not self.is_over:
             raise RequestError("the run is still under way; wait for its end, or cancel it")
-        if self._found is None:
-            self._found = result(self.job)
-        return self._found
+        if self._run is None:
+            self._run = result(self.job)
+        return self._run
 
     def _tallied(self, index: int, row: Row) -> Row:
-        cell, columns = self.job.plan.cells[index], self.job.columns[index]
-        finished = self._finished(index)
-        if not finished.any():
-            return row
-        if not finished.all():
-            columns = columns.select(finished)
-        return row_of(cell, columns, float(self.job._seconds[index]))
-
-    def _finished(self, index: int) -> NDArray[np.bool_]:
-        # A copy: the workers go on, and all columns must be cut by one and the same mask.
-        return self.job._finished[index].copy()
+        trials = self.job.finished_trials(index)
+        return row if trials is None else row_of(self.job.plan.cells[index], *trials)
 
 
 class KeptRun(ShownRun):

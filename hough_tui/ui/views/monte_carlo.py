@@ -17,12 +17,12 @@ from textual.widgets import Static
 from algorithms.parameters import Problem
 from hough_tui.ui.drawing.shortening import BETWEEN
 from hough_tui.ui.runs.pace import Pace, duration
-from hough_tui.ui.runs.run_controller import Asked, Ended, Event, Filled, Running, Started, keep
+from hough_tui.ui.runs.run_controller import Ended, Event, Filled, Running, RunRequest, Started, keep
 from hough_tui.ui.runs.shown_run import LiveRun
 from hough_tui.ui.screens.question import telling
 from hough_tui.ui.widgets.experiment_form import ExperimentForm
 from hough_tui.ui.widgets.rate_panel import RatePanel
-from hough_tui.ui.widgets.run_form import RunForm, asked_name, asked_text, asked_words
+from hough_tui.ui.widgets.run_form import RunForm, request_name, request_text, request_words
 from hough_tui.ui.widgets.run_line import RunLine
 from scenarios.model import ScenarioSet
 
@@ -93,7 +93,7 @@ class MonteCarloView(Widget):
         self._given: ScenarioSet | None = None
         self._added = ""
         self._reason: str | None = None
-        self._asked: Asked | None = None
+        self._request: RunRequest | None = None
         self._current: Running | None = None
         self._live: LiveRun | None = None
         self._pace = Pace(0)
@@ -102,7 +102,7 @@ class MonteCarloView(Widget):
         self._timer: Timer | None = None
 
     def compose(self) -> ComposeResult:
-        """Lay out what is asked, how far it is, and the results."""
+        """Lay out the request, how far it is, and the results."""
         yield RunForm()
         yield RunLine()
         yield Hint(markup=False)
@@ -179,17 +179,17 @@ class MonteCarloView(Widget):
         """Run the experiment, unless something is wrong."""
         if self.is_at_work:
             return
-        asked = self._read()
-        if isinstance(asked, str):
-            self.query_one(RunLine).tell(asked, is_problem=True)
+        request = self._read()
+        if isinstance(request, str):
+            self.query_one(RunLine).tell(request, is_problem=True)
             self.app.bell()
             return
 
         def tell(event: Event) -> None:
             self.post_message(self.Happened(running, event))
 
-        running = Running(asked, tell)
-        self._asked, self._unkept, self._result, self._current = asked, None, "", running
+        running = Running(request, tell)
+        self._request, self._unkept, self._result, self._current = request, None, "", running
         self._pace = Pace(0)
         self.query_one(RunForm).show_running(True)
         self._show_running("preparing")
@@ -315,31 +315,36 @@ class MonteCarloView(Widget):
         self._added = event.name  # the set that has it is yet to come
 
     @on(RunForm.Changed)
-    def _asked_changed(self) -> None:
+    def _request_changed(self) -> None:
         self._show_form()
         self._tell_idle()
 
-    def _read(self) -> Asked | str:
+    def _read(self) -> RunRequest | str:
         """Return what is to run, or why nothing can."""
         return f"a field is wrong: {self._reason}" if self._reason else self.query_one(RunForm).read()
 
     def _show_running(self, words: str) -> None:
         is_begun = self._live is not None and self._live.job.plan.trials == self._pace.total
         self.query_one(RunLine).tell(words, self._pace.done / self._pace.total if is_begun else 0.0)
-        self.post_message(self.Progress(f"{asked_name(self._asked)}: {words}" if self._asked else words))
+        self.post_message(
+            self.Progress(f"{request_name(self._request)}: {words}" if self._request else words)
+        )
 
     def _tell_idle(self) -> None:
         """Say what would run, or what ran."""
         if self.is_at_work:
             return
-        asked, line = self._read(), self.query_one(RunLine)
-        if isinstance(asked, str):
-            line.tell(asked, is_problem=True)
-            self.query_one(Hint).update(asked)
+        request, line = self._read(), self.query_one(RunLine)
+        if isinstance(request, str):
+            line.tell(request, is_problem=True)
+            self.query_one(Hint).update(request)
             return
-        self.query_one(Hint).update(asked_text(asked))
-        result, is_stale = self._result, self._asked is not None and self._asked.given != asked.given
+        self.query_one(Hint).update(request_text(request))
+        result, is_stale = (
+            self._result,
+            self._request is not None and self._request.scenario_set != request.scenario_set,
+        )
         if result and is_stale:
             what, *others = result.split(BETWEEN)
             result = BETWEEN.join((what, "the set has changed since", *others))
-        line.tell(result or f"{asked_words(asked)}{BETWEEN}r runs it")
+        line.tell(result or f"{request_words(request)}{BETWEEN}r runs it")

@@ -14,7 +14,7 @@ from textual.widgets import Button, Input, Select, Static
 
 from hough_tui.reports.field_names import field_name
 from hough_tui.reports.numerals import as_given
-from hough_tui.ui.runs.run_controller import Asked
+from hough_tui.ui.runs.run_controller import RunRequest
 from hough_tui.ui.widgets.run_field import RunField
 from scenarios.experiments import Experiment
 from scenarios.model import ScenarioSet
@@ -104,7 +104,7 @@ class RunForm(Horizontal):
         name = self.query_one(Select).value
         return [experiment for experiment in self.experiments_of_set if name in (ALL, experiment.name)]
 
-    def read(self) -> Asked | str:
+    def read(self) -> RunRequest | str:
         """Return what is asked for, or what is wrong."""
         chosen = self.experiments
         if self._given is None or not chosen:
@@ -114,7 +114,7 @@ class RunForm(Horizontal):
             given[field.field], problem = field.read(chosen)
             if problem is not None:
                 return problem
-        return Asked(self._given, tuple(experiment.name for experiment in chosen), **given)
+        return RunRequest(self._given, tuple(experiment.name for experiment in chosen), **given)
 
     @on(Select.Changed)
     @on(Input.Changed)
@@ -130,28 +130,32 @@ class RunForm(Horizontal):
         self.post_message(self.Go())
 
 
-def asked_words(asked: Asked) -> str:
+def request_words(request: RunRequest) -> str:
     """Return how much is asked for."""
-    chosen = [experiment for experiment in asked.given.experiments if experiment.name in asked.experiments]
+    chosen = [
+        experiment
+        for experiment in request.scenario_set.experiments
+        if experiment.name in request.experiments
+    ]
     cells = [
-        math.prod(len(asked.given.chosen(experiment, part)) for part in experiment.parts)
+        math.prod(len(request.scenario_set.chosen(experiment, part)) for part in experiment.parts)
         * math.prod(map(len, experiment.sweep.values()))
         for experiment in chosen
     ]
     trials = sum(
-        count * (asked.trials or experiment.trials) for count, experiment in zip(cells, chosen, strict=True)
+        count * (request.trials or experiment.trials) for count, experiment in zip(cells, chosen, strict=True)
     )
-    return f"{asked_name(asked)}: {sum(cells):,} cell{'s' * (sum(cells) != 1)}, {trials:,} trials"
+    return f"{request_name(request)}: {sum(cells):,} cell{'s' * (sum(cells) != 1)}, {trials:,} trials"
 
 
-def asked_text(asked: Asked) -> str:
+def request_text(request: RunRequest) -> str:
     """Return what would run, in a few lines."""
     lines = []
-    for experiment in asked.given.experiments:
-        if experiment.name not in asked.experiments:
+    for experiment in request.scenario_set.experiments:
+        if experiment.name not in request.experiments:
             continue
         entries, *_, worlds = (
-            ", ".join(element.name for element in asked.given.chosen(experiment, part))
+            ", ".join(element.name for element in request.scenario_set.chosen(experiment, part))
             for part in reversed(experiment.parts)
         )
         swept = "".join(
@@ -159,10 +163,10 @@ def asked_text(asked: Asked) -> str:
             for key, values in experiment.sweep.items()
         )
         lines += [experiment.name, experiment.description, f"{entries} on {worlds}{swept}", ""]
-    return "\n".join([*lines, asked_words(asked), "", "r runs it"])
+    return "\n".join([*lines, request_words(request), "", "r runs it"])
 
 
-def asked_name(asked: Asked) -> str:
+def request_name(request: RunRequest) -> str:
     """Return what it is called."""
-    names = asked.experiments
+    names = request.experiments
     return names[0] if len(names) == 1 else f"{len(names)} experiments"

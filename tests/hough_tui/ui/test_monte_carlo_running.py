@@ -9,7 +9,7 @@ from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.results import result
 from hough_tui.experiments.stores.folder import FolderStore, Run
 from hough_tui.ui.runs.pace import Pace, duration
-from hough_tui.ui.runs.run_controller import Asked, Ended, Filled, Running, Started
+from hough_tui.ui.runs.run_controller import Ended, Filled, Running, RunRequest, Started
 from hough_tui.ui.runs.shown_run import KeptRun, LiveRun
 from scenarios.files.set_files import load_set
 
@@ -25,7 +25,7 @@ def given():
 
 def test_a_run_tells_its_beginning_its_rows_and_its_end(given):
     told = []
-    Running(Asked(given, ("modified",), trials=300), told.append).work()
+    Running(RunRequest(given, ("modified",), trials=300), told.append).work()
     assert isinstance(told[0], Started)
     assert isinstance(told[-1], Ended)
     assert all(isinstance(event, Filled) for event in told[1:-1])
@@ -39,7 +39,7 @@ def test_a_run_tells_its_beginning_its_rows_and_its_end(given):
 
 def test_a_run_that_is_cancelled_before_it_begins_does_nothing(given):
     told = []
-    running = Running(Asked(given), told.append)
+    running = Running(RunRequest(given), told.append)
     running.cancel()
     running.work()
     assert told == [Ended()]
@@ -48,7 +48,7 @@ def test_a_run_that_is_cancelled_before_it_begins_does_nothing(given):
 
 def test_a_wrong_request_is_told(given):
     told = []
-    Running(Asked(given, ("no such",)), told.append).work()
+    Running(RunRequest(given, ("no such",)), told.append).work()
     (ended,) = told
     assert "there is no experiment 'no such'" in ended.problem
 
