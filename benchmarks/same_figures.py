@@ -26,7 +26,7 @@ HERE = Path(__file__).resolve().parent.parent
 LEFT_ASIDE = {"seconds_per_trial"}
 """Keys of a row that are no figures of its trials."""
 
-RENAMED = {"success_ci95": "success_rate_ci95"}
+RENAMED = {"success_ci95": "success_rate_ci95", "count_exact_ci95": "count_exact_rate_ci95"}
 """Keys that have had another name: the old one, then that of today."""
 
 IDENTITY = ("experiment", "scenario", "scene", "initiator", "clustering", "swept")

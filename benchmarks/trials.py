@@ -13,7 +13,7 @@ from measure import ratio, rounds, verdict
 
 from algorithms.hough.voting import GridArrays, vote
 from algorithms.initiators.registry import initiator
-from algorithms.scoring import score
+from algorithms.scoring.matching import score
 from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.plan import plan_run
 from scenarios.files.set_files import load_set

@@ -20,7 +20,7 @@ from algorithms.parameters import (
     parameter,
     with_default,
 )
-from algorithms.scoring import Criterion
+from algorithms.scoring.matching import Criterion
 
 MOST_TRIALS = 10_000_000
 LARGEST_SEED = 2**64 - 1

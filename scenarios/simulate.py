@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
 from algorithms.plots import PlotChunk
-from algorithms.scoring import Truth
+from algorithms.scoring.matching import Truth
 from algorithms.target_states import TargetStates
 from scenarios.clutter_plots import clutter_numbers, put_clutter, sort_batch
 from scenarios.model import Scenario

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from algorithms.hough.voting import Accumulator
 from algorithms.parameters import Parameters
 from algorithms.plots import Plots
-from algorithms.scoring import score
+from algorithms.scoring.matching import score
 from algorithms.space.planes import PlaneVotes
 from algorithms.tracks import Tracks
 from hough_tui.experiments.chunks.plot_sources import plots_of

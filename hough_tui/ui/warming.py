@@ -5,7 +5,7 @@ from __future__ import annotations
 from algorithms.errors import RequestError
 from algorithms.initiators.base import ChunkInitiator
 from algorithms.initiators.registry import initiators
-from algorithms.scoring import Criterion, score
+from algorithms.scoring.matching import Criterion, score
 from scenarios.clutter import PoissonClutter, Region
 from scenarios.model import Scenario, ScenarioSet
 from scenarios.sensors import CartesianSensor

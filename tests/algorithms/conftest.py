@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from algorithms.plots import PlotChunk
-from algorithms.scoring import score
+from algorithms.scoring.matching import score
 from scenarios.files.set_files import load_set
 from scenarios.simulate import draw, truth
 from scenarios.world import World

@@ -9,7 +9,7 @@ from algorithms.context import Context, Unit
 from algorithms.errors import RequestError
 from algorithms.initiators.registry import initiators
 from algorithms.parameters import numeric_paths, validated
-from algorithms.scoring import Criterion
+from algorithms.scoring.matching import Criterion
 from scenarios.clutter import MOST_PLOTS, PoissonClutter, Region
 from scenarios.experiments import LARGEST_SEED, MOST_TRIALS, InitiationExperiment, MatchCriterion
 from scenarios.model import Scenario, ScenarioSet

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from algorithms.initiators.base import ChunkInitiator
 from algorithms.plots import PlotChunk
-from algorithms.scoring import Scores, score
+from algorithms.scoring.matching import Scores, score
 from algorithms.tracks import TrackChunk
 from hough_tui.experiments.cases import Cell, CellPart, Row, SharedDraws, SharedRun
 from hough_tui.experiments.chunks.plot_sources import PlotSource, plot_source, stage_key

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.context import Box
-from algorithms.scoring import DUPLICATE, FALSE, FINDER
+from algorithms.scoring.matching import DUPLICATE, FALSE, FINDER
 from hough_tui.ui.drawing.graticule import Sector
 from hough_tui.ui.widgets.heatmap_scene import HeatmapScene
 from hough_tui.ui.widgets.plane_scene import PlaneScene, PlaneTrack

@@ -11,7 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 from textual.widgets import DataTable
 
-from algorithms.scoring import DUPLICATE, FALSE, FINDER
+from algorithms.scoring.matching import DUPLICATE, FALSE, FINDER
 
 if TYPE_CHECKING:
     from hough_tui.inspection.trial import TrialLook

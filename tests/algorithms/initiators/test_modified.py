@@ -14,7 +14,7 @@ from algorithms.initiators.modified import ModifiedParameters
 from algorithms.initiators.registry import initiator
 from algorithms.parameters import validated
 from algorithms.plots import PlotChunk, Plots
-from algorithms.scoring import Criterion
+from algorithms.scoring.matching import Criterion
 from scenarios.targets import Target
 
 steady = settings(deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])

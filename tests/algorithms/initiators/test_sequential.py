@@ -11,7 +11,7 @@ from algorithms.initiators.registry import initiator
 from algorithms.initiators.sequential import SequentialParameters
 from algorithms.parameters import validated
 from algorithms.plots import Plots
-from algorithms.scoring import Criterion
+from algorithms.scoring.matching import Criterion
 
 TRIALS = 2000
 BY_RHO = Criterion(rho=3.0)

@@ -15,7 +15,7 @@ from algorithms.initiators.registry import initiator
 from algorithms.initiators.standard import StandardParameters
 from algorithms.parameters import validated
 from algorithms.plots import Plots
-from algorithms.scoring import Criterion
+from algorithms.scoring.matching import Criterion
 
 steady = settings(
     deadline=None, derandomize=True, max_examples=200, suppress_health_check=[HealthCheck.too_slow]

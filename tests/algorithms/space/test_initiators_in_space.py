@@ -10,7 +10,7 @@ from algorithms.errors import RequestError
 from algorithms.initiators.registry import initiator
 from algorithms.parameters import validated
 from algorithms.plots import PlotChunk
-from algorithms.scoring import Criterion, score
+from algorithms.scoring.matching import Criterion, score
 from scenarios.files.set_files import load_set
 from scenarios.model import Scenario
 from scenarios.simulate import draw, truth

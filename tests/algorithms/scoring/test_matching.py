@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from algorithms.scoring import DUPLICATE, FALSE, FINDER, Criterion, Truth, score
+from algorithms.scoring.matching import DUPLICATE, FALSE, FINDER, Criterion, Truth, score
 from algorithms.tracks import TrackChunk
 
 steady = settings(

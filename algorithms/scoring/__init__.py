@@ -1,0 +1,1 @@
+"""Scoring: the tracks of a chunk of trials against the truth."""
