@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,8 +14,11 @@ from algorithms.parameters import (
     FieldError,
     Path,
     Problem,
+    listed,
+    nearest,
     numeric_paths,
     replaced,
+    shortened,
 )
 from scenarios.entries import ClusteringEntry, InitiatorEntry, WithoutClustering
 from scenarios.experiments import ClusteringExperiment, Experiment, InitiationExperiment
@@ -25,6 +27,9 @@ from scenarios.scenes import Scene
 
 MOST_POINTS = 20_000
 """The most points of one experiment."""
+
+LONGEST_INDEX = 9
+"""The most digits of an index in a list."""
 
 SINGULAR = {
     "scenarios": "scenario",
@@ -193,13 +198,15 @@ def place_among(key: str, elements: Elements) -> tuple[str, Path]:
     if len(found) == 1:
         return found[0]
     if found:
-        names = ", ".join(written(part, path) for part, path in found)
-        raise FieldError(Problem(("sweep", key), f"'{key}' may mean {names}; write one of them", on_key=True))
+        names = listed([written(part, path) for part, path in found])
+        message = f"'{shortened(key)}' may mean {names}; write one of them"
+        raise FieldError(Problem(("sweep", key), message, on_key=True))
     every = [written(part, path) for part in known for path in known[part]]
     ends = [str(path[-1]) for part in known for path in known[part] if isinstance(path[-1], str)]
-    near = difflib.get_close_matches(key, [*every, *ends], n=1, cutoff=0.5)
-    hint = f"; did you mean '{near[0]}'?" if near else ""
-    message = f"there is no numeric field '{key}'{hint} (known: {', '.join(every)})"
+    hint = nearest(key, [*every, *ends])
+    # Of each part some, where a part has very many.
+    fields = ", ".join(listed([written(part, path) for path in known[part]]) for part in known)
+    message = f"there is no numeric field '{shortened(key)}'{hint} (known: {fields})"
     asked = [wanted[0]] if wanted[0] in known else list(known)
     shared = " and every ".join(str(part) for part in asked if len(elements[str(part)]) > 1)
     if shared:
@@ -210,7 +217,7 @@ def place_among(key: str, elements: Elements) -> tuple[str, Path]:
 def parts_of(key: str) -> Path:
     """Return a dotted path, `clutter.0.rate` or `clutter[0].rate`, as its parts."""
     names = re.sub(r"\[(\d+)\]", r".\1", key).split(".")
-    return tuple(int(name) if name.isdecimal() else name for name in names)
+    return tuple(int(name) if name.isdecimal() and len(name) <= LONGEST_INDEX else name for name in names)
 
 
 def written(part: str, path: Path) -> str:
@@ -232,4 +239,5 @@ def _is_named(path: Path, wanted: Path, *, whole: bool) -> bool:
 def _common(elements: Sequence[Declared]) -> list[Path]:
     """Return the numeric fields that all elements have."""
     paths = [list(numeric_paths(element)) for element in elements]
-    return [path for path in paths[0] if all(path in others for others in paths)] if paths else []
+    shared = set.intersection(*map(set, paths)) if paths else set()
+    return [path for path in paths[0] if path in shared] if paths else []

@@ -30,12 +30,13 @@ from algorithms.parameters.validation import (
     FieldError,
     Problem,
     join,
+    lines,
     missing_either,
     problems,
     replaced,
-    unknown,
     validated,
 )
+from algorithms.parameters.words import listed, nearest, shortened, unknown
 
 __all__ = [
     "LARGEST_WHOLE",
@@ -61,11 +62,15 @@ __all__ = [
     "field_at",
     "fields_at",
     "join",
+    "lines",
+    "listed",
     "missing_either",
+    "nearest",
     "numeric_paths",
     "parameter",
     "problems",
     "replaced",
+    "shortened",
     "unknown",
     "validated",
     "with_default",

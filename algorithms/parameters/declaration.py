@@ -22,7 +22,8 @@ Integer = Annotated[int, Field(strict=True, ge=-LARGEST_WHOLE, le=LARGEST_WHOLE)
 Whole = Annotated[int, Field(strict=True, ge=0, le=LARGEST_WHOLE)]
 Count = Annotated[int, Field(strict=True, ge=1, le=LARGEST_WHOLE)]
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"
-Name = Annotated[str, Field(min_length=1, pattern=NAME)]
+LONGEST_NAME = 200
+Name = Annotated[str, Field(min_length=1, max_length=LONGEST_NAME, pattern=NAME)]
 Flag = Annotated[bool, Field(strict=True)]
 Auto = Literal["auto"]
 

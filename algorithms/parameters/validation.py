@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeVar
@@ -12,10 +11,17 @@ from pydantic_core import PydanticCustomError
 
 from algorithms.errors import RequestError
 from algorithms.parameters.paths import Path, dotted, fields_at, path_in, value_at
+from algorithms.parameters.words import shortened, unknown
 
 Model = TypeVar("Model", bound=BaseModel)
 
 MISSING_EITHER: Final = "missing_either"
+
+LONGEST_PATH = 160
+"""The most characters of a field's path that a message repeats."""
+
+MOST_PROBLEMS = 50
+"""The most problems that are listed, one a line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,12 +70,19 @@ def validated(model: type[Model], data: Any, what: str) -> Model:
         return model.model_validate(data)
     except ValidationError as error:
         found = problems(error, model, data)
-        raise RequestError("\n".join(f"{what}: {join(problem)}" for problem in found)) from None
+        raise RequestError(lines([f"{what}: {join(problem)}" for problem in found], what)) from None
 
 
 def join(problem: Problem) -> str:
     """Return a problem with its field before it."""
-    return f"{problem.field}: {problem.message}" if problem.path else problem.message
+    return f"{shortened(problem.field, LONGEST_PATH)}: {problem.message}" if problem.path else problem.message
+
+
+def lines(messages: Sequence[str], what: str) -> str:
+    """Return messages one a line; of very many the first, and how many more there are in `what`."""
+    more = len(messages) - MOST_PROBLEMS
+    rest = [f"{what}: … {more:,} more"] if more > 0 else []
+    return "\n".join([*messages[:MOST_PROBLEMS], *rest])
 
 
 def problems(error: ValidationError, model: type[BaseModel], data: Any) -> list[Problem]:
@@ -111,27 +124,20 @@ def _problem(path: Path, details: list[Any], model: type[BaseModel], data: Any) 
     return Problem(path, f"{_shown(first['input'])} is given; it must be {' or '.join(allowed)}")
 
 
-def unknown(name: str, known: Sequence[str], what: str) -> str:
-    """Return the words for a name that is not known, with the nearest known one."""
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    hint = f"; did you mean '{near[0]}'?" if near else ""
-    return f"there is no {what} '{name}'{hint} (known: {', '.join(known) or 'none'})"
-
-
 def _unknown(name: str, known: Sequence[str]) -> str:
     return unknown(name, known, "field")
 
 
 def _shown(value: Any) -> str:
     if isinstance(value, str):
-        return repr(value)
+        return repr(shortened(value))
     if isinstance(value, Mapping):
         return "a mapping"
     if isinstance(value, list | tuple):
         return f"a list of {len(value)}"
     if value is None:
         return "nothing"
-    return str(value).lower() if isinstance(value, bool) else repr(value)
+    return str(value).lower() if isinstance(value, bool) else shortened(repr(value))
 
 
 _ALLOWED = {
@@ -153,6 +159,7 @@ _ALLOWED = {
     "too_short": "a list of at least {min_length}",
     "too_long": "a list of at most {max_length}",
     "string_too_short": "at least {min_length} characters long",
+    "string_too_long": "at most {max_length} characters long",
     "string_pattern_mismatch": "of the form {pattern}",
     "list_type": "a list",
     "tuple_type": "a list",

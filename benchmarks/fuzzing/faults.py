@@ -21,6 +21,7 @@ LONG = re.compile(r"(?i)takes? (about|long|up to|at least)|\bwill take\b|estimat
 
 INTERRUPTED = 130
 SHOWN = 160
+LONGEST_LINE, MOST_LINES = 2_000, 60
 
 
 def faults(outcome: Outcome) -> Iterator[str]:
@@ -79,9 +80,9 @@ def _faults_of_refusal(outcome: Outcome, said: str, printed: str) -> Iterator[st
         yield f"silent: {last_line(said)}"
     elif not any(part in said for part in (outcome.arguments[1], "--", "give ")):
         yield f"placeless: {last_line(said)}"
-    if max(map(len, messages), default=0) > 1_000:
-        yield "long: a line of more than 1,000 characters"
-    if len(messages) > 200:
+    if max(map(len, messages), default=0) > LONGEST_LINE:
+        yield f"long: a line of more than {LONGEST_LINE:,} characters"
+    if len(messages) > MOST_LINES:
         yield f"many: {len(messages)} lines"
 
 
@@ -93,6 +94,8 @@ def last_line(text: str) -> str:
 
 def innermost(said: str) -> str:
     """Return the innermost place in the product that a traceback, or the report of a crash, names."""
+    # Of a crash the thread counts in which it happened.
+    said = said.partition("Current thread")[2] or said
     frames = re.findall(
         r'File "[^"]*?/((?:algorithms|scenarios|hough_tui)/[^"]+)", line (\d+)(?: in (\w+))?', said
     )

@@ -47,7 +47,7 @@ class Outcome:
     seconds : how long it took: the lesser of wall-clock time and processor time, since the machine may be
         busy with something else
     peak : of memory, in bytes
-    ending : wall-clock seconds that it went on after an interrupt; None where there was none
+    ending : seconds that it went on after an interrupt, counted as `seconds` are; None where there was none
     """
 
     arguments: tuple[str, ...]
@@ -133,7 +133,7 @@ class Watch:
         assert self.process is not None
         assert self.process.stdout is not None
         began, used = time.monotonic(), self._processor()
-        interrupted: float | None = None
+        interrupted: tuple[float, float] | None = None
         seconds, highest = 0.0, 0
         with selectors.DefaultSelector() as ready:
             ready.register(self.process.stdout, selectors.EVENT_READ)
@@ -145,13 +145,13 @@ class Watch:
                     seconds = min(wall, self._processor() - used)
                     # One that waits for something uses no processor time.
                     if seconds > longest or wall > 12 * longest:
-                        interrupted = now
+                        interrupted = now, self._processor()
                         self.process.send_signal(signal.SIGINT)
-                if (interrupted is not None and now - interrupted > DEAD) or memory > self.deadly:
+                if (interrupted and now - interrupted[0] > DEAD) or memory > self.deadly:
+                    ending = self._since(interrupted)
                     self.end()
-                    ending = None if interrupted is None else now - interrupted
                     return self._outcome(arguments, None, seconds, highest, ending)
-        ending = None if interrupted is None else time.monotonic() - interrupted
+        ending = self._since(interrupted)
         line = self.process.stdout.readline()
         if not line:
             # The worker is gone: it crashed, or the command ended the process by itself.
@@ -170,6 +170,14 @@ class Watch:
             for name in ("out", "err")
         )
         return Outcome(arguments, status, out, err, seconds, peak, ending)
+
+    def _since(self, moment: tuple[float, float] | None) -> float | None:
+        """Return the seconds since a moment, of wall-clock time and of processor time."""
+        if moment is None:
+            return None
+        wall, processor = time.monotonic() - moment[0], self._processor() - moment[1]
+        # What waits for something that never comes uses no processor time.
+        return wall if wall > DEAD or processor <= 0 else min(wall, processor)
 
     def _processor(self) -> float:
         """Return the seconds of processor time that the worker has used, all its threads together."""

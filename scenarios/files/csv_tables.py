@@ -21,11 +21,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.errors import RequestError
+from algorithms.parameters import listed, shortened
 
 # Rows are converted by the block, since their text takes many times the room of their numbers. Blocks
 # this small die before the garbage collector looks at them, which takes longer than all else.
 BLOCK = 256
 LARGEST_SCAN = 2**31 - 1
+
+MOST_COMPARED = 200
+"""The most columns among which a misspelt one is sought: a table of numbers alone may have very many."""
 
 Numbers = NDArray[np.float64]
 
@@ -138,24 +142,29 @@ def _names(line: int, header: Sequence[str], source: str, form: TableForm) -> li
     """Return the names of the columns, spaces stripped."""
     names = [cell.strip() for cell in header]
     keys = [name.casefold() for name in names]
+    places: dict[str, int] = {}
     for at, key in enumerate(keys):
-        if (first := keys.index(key)) < at:
-            both = f"columns {first + 1} and {at + 1} are both called {names[at]!r}"
+        if (first := places.setdefault(key, at)) < at:
+            both = f"columns {first + 1} and {at + 1} are both called {shortened(names[at])!r}"
             raise RequestError(f"{source}:{line}: {both}; names must differ, in more than case")
     lacks = {f"no column {name!r}": [name] for name in form.needed if name not in keys}
     if form.either and not set(form.either) & set(keys):
         lacks["neither {!r} nor {!r}".format(*form.either)] = list(form.either)
     if lacks:
         near = [found for wanted in lacks.values() for name in wanted if (found := _nearest(name, names))]
-        hint = "; rename " + " and ".join(map(repr, dict.fromkeys(near))) + ", if that is it" if near else ""
-        has = ", ".join(map(repr, names[:20])) + (", …" if len(names) > 20 else "")
+        hint = (
+            "; rename " + " and ".join(map(repr, map(shortened, dict.fromkeys(near)))) + ", if that is it"
+            if near
+            else ""
+        )
+        has = listed([repr(shortened(name)) for name in names])
         raise RequestError(f"{source}:{line}: there is {' and '.join(lacks)}; the header has {has}{hint}")
     return names
 
 
 def _nearest(wanted: str, names: Sequence[str]) -> str | None:
     """Return the name most like a wanted one: one that has it as a word (`x_km`), or is spelt alike."""
-    keys = {name.casefold(): name for name in names}
+    keys = {name.casefold(): name for name in names[:MOST_COMPARED]}
     alike = [key for key in keys if wanted in re.findall(r"[a-z]+", key)]
     return next((keys[key] for key in alike or difflib.get_close_matches(wanted, keys, 1)), None)
 
@@ -202,7 +211,7 @@ def _refuse(
     """Say what is wrong with one field of the row that begins on a line."""
     line += sum(len(re.findall(r"\r\n?|\n", cell)) for cell in cells[:at])
     cell = cells[at].strip()
-    given = f"{cell if len(cell) <= 40 else cell[:39] + '…'!r} is given" if cell else "nothing is given"
+    given = f"{shortened(cell, 40)!r} is given" if cell else "nothing is given"
     allowed = "a number" + (" with a decimal point" if "," in cell else "")
     if column.is_whole:
         allowed = column.allowed
@@ -211,4 +220,4 @@ def _refuse(
             # A number that is good in itself was refused for how it is written.
             is_good = _numbers([repr(float(cell))], column) is not None
             allowed = allowed if is_good else column.allowed
-    raise RequestError(f"{source}:{line}: column {name!r}: {given}; it must be {allowed}")
+    raise RequestError(f"{source}:{line}: column {shortened(name)!r}: {given}; it must be {allowed}")

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from algorithms.errors import RequestError
-from algorithms.parameters import Problem, join, problems, unknown
+from algorithms.parameters import Problem, join, lines, problems, unknown
 from scenarios.checks import inconsistencies
 from scenarios.files.atomic import replace_file
 from scenarios.files.bundled import bundled_paths
@@ -107,7 +107,7 @@ def parse_set(text: str, source: str) -> ScenarioSet:
         found = list(inconsistencies(given))
         if not found:
             return given
-    raise RequestError("\n".join(located(problem, document) for problem in found))
+    raise RequestError(lines([located(problem, document) for problem in found], source))
 
 
 def located(problem: Problem, document: MarkedDocument) -> str:

@@ -14,6 +14,7 @@ from typing import Any
 import yaml  # type: ignore[import-untyped,unused-ignore]
 
 from algorithms.errors import RequestError
+from algorithms.parameters import shortened
 from scenarios.files.marked_yaml.syntax import (
     BLANK_END,
     BREAK,
@@ -150,7 +151,9 @@ class Reader:
                 context += f" that began on line {begun.line + 1},"
             said = f"{context} {getattr(error, 'problem', None) or error}"
             remedy = "use spaces instead" if "\\t" in said else "check indentation, brackets and quotes"
-            raise self.failure(mark, f"not valid YAML: {' '.join(said.split())}; {remedy}") from None
+            raise self.failure(
+                mark, f"not valid YAML: {shortened(' '.join(said.split()), 200)}; {remedy}"
+            ) from None
 
     def document(self) -> Node | None:
         """Read the one document that there may be."""
@@ -174,7 +177,7 @@ class Reader:
         is_scalar, is_map = isinstance(event, yaml.ScalarEvent), isinstance(event, yaml.MappingStartEvent)
         if event.tag not in (None, "!", CORE + ("str" if is_scalar else "map" if is_map else "seq")):
             tag = event.tag.replace(CORE, "!!")
-            raise self.failure(mark, f"the tag {tag} means nothing here; remove it")
+            raise self.failure(mark, f"the tag {shortened(tag)} means nothing here; remove it")
         self.anchors[event.anchor] = None
         if is_scalar:
             value, end, literal = self.scalar(event), event.end_mark.index, event.style in ("|", ">")
@@ -193,7 +196,7 @@ class Reader:
         target = self.anchors.get(name)
         if target is None:
             fault = "stands inside its own anchor" if name in self.anchors else "has no anchor before it"
-            raise self.failure(mark, f"the alias *{name} {fault}; write the value out")
+            raise self.failure(mark, f"the alias *{shortened(name)} {fault}; write the value out")
         self.copies += target.size
         if self.copies > MOST_COPIES or depth + target.height > DEEPEST:
             raise self.failure(mark, "the aliases make the document too large; use fewer of them")
@@ -255,7 +258,7 @@ class Reader:
         if key.value in mapping.value:
             before = mapping.children[list(mapping.value).index(key.value)].key or key
             twice = f"stands on line {before.mark.line + 1} and again on line {key.mark.line + 1}"
-            raise self.failure(key.mark, f"the key {key.value!r} {twice}; keep one of them")
+            raise self.failure(key.mark, f"the key {shortened(key.value)!r} {twice}; keep one of them")
         return key
 
     def tail(self, position: int, column: int) -> int:
