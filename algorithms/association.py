@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
+from algorithms.kinematics.constant_velocity import Motion, squared_miss
+from algorithms.kinematics.least_squares import Fitting, add_plot, fit
+from algorithms.kinematics.matrices import PLANE
+from algorithms.kinematics.measured import Measured, part_of
 from algorithms.plots import PlotChunk
 from algorithms.tracks import TrackChunk
 
@@ -51,111 +57,147 @@ def _motion(along, time, scan, gate):  # type: ignore[no-untyped-def]
     return best_scans, best_start, best_speed
 
 
-@kernel
-def _fit(x, y, time, rows, count):  # type: ignore[no-untyped-def]
-    """Return position at the mean time, velocity, mean time, and whether these are settled."""
-    mean_time, mean_x, mean_y = 0.0, 0.0, 0.0
-    for k in range(count):
-        mean_time += time[rows[k]] / count
-        mean_x += x[rows[k]] / count
-        mean_y += y[rows[k]] / count
-    spread, slope_x, slope_y = 0.0, 0.0, 0.0
-    for k in range(count):
-        centred = time[rows[k]] - mean_time
-        spread += centred * centred
-        slope_x += centred * (x[rows[k]] - mean_x)
-        slope_y += centred * (y[rows[k]] - mean_y)
-    if spread == 0.0:
-        return mean_x, mean_y, 0.0, 0.0, mean_time, False
-    return mean_x, mean_y, slope_x / spread, slope_y / spread, mean_time, True
+class Line(NamedTuple):
+    """A line ρ = x·cos θ + y·sin θ."""
+
+    cosine: float
+    sine: float
+    rho: float
+
+
+class Reach(NamedTuple):
+    """How far from a line and from a motion a plot may lie.
+
+    Attributes
+    ----------
+    half_width : greatest distance from the line
+    gate : greatest distance from the fitted motion
+    """
+
+    half_width: float
+    gate: float
+
+
+class Beside(NamedTuple):
+    """Plots beside a line: working space.
+
+    Attributes
+    ----------
+    near, chosen : int64 (n,), rows of the plots beside the line, and of those that are taken
+    along : float64 (n,), where they lie along it
+    time, scan : float64 and int32 (n,)
+    fitting : `Fitting`, in the plane
+    """
+
+    near: NDArray[np.int64]
+    chosen: NDArray[np.int64]
+    along: NDArray[np.float64]
+    time: NDArray[np.float64]
+    scan: NDArray[np.int32]
+    fitting: Fitting
+
+    @classmethod
+    def of(cls, plots: int) -> Beside:
+        """Return space for so many plots."""
+        return cls(
+            np.empty(plots, np.int64),
+            np.empty(plots, np.int64),
+            np.empty(plots),
+            np.empty(plots),
+            np.empty(plots, np.int32),
+            Fitting.of(2),
+        )
 
 
 @kernel
-def _choose(x, y, time, scan, near, at_x, at_y, speed_x, speed_y, at_time, gate, rows):  # type: ignore[no-untyped-def]
+def _fitted_motion(measured, rows, fitting):  # type: ignore[no-untyped-def]
+    """Return the motion fitted to plots, and whether they are of more than one time."""
+    sums, state = fitting.sums, fitting.fit.state
+    is_settled = False
+    for k in range(len(rows)):
+        add_plot(sums, min(k, 1), 1, measured, rows[k], rows[0], PLANE)
+        is_settled = is_settled or measured.time[rows[k]] != measured.time[rows[0]]
+    fit(sums, 1, fitting.fit, PLANE)
+    for axis in range(2):
+        state[0, axis] += measured.position[rows[0], axis]
+    return Motion(state[0], state[1], measured.time[rows[0]]), is_settled
+
+
+@kernel
+def _choose(measured, near, motion, gate, chosen):  # type: ignore[no-untyped-def]
     """Write the nearest plot of each scan within the gate of a motion; return how many."""
+    scan = measured.scan
     count, current, nearest = 0, np.int64(-1), np.inf
     for plot in near:
         if scan[plot] != current:
             if nearest <= gate * gate:
                 count += 1
             current, nearest = np.int64(scan[plot]), np.inf
-        elapsed = time[plot] - at_time
-        miss_x = x[plot] - at_x - speed_x * elapsed
-        miss_y = y[plot] - at_y - speed_y * elapsed
-        miss = miss_x * miss_x + miss_y * miss_y
+        miss = squared_miss(motion, measured, plot, PLANE)
         if miss < nearest:
             nearest = miss
             if miss <= gate * gate:
-                rows[count] = plot
+                chosen[count] = plot
     if nearest <= gate * gate:
         count += 1
     return count
 
 
 @kernel
-def _plots_of_line(  # type: ignore[no-untyped-def]
-    x, y, time, scan, cosine, sine, rho, half_width, gate, near, along, near_time, near_scan, rows
-):
-    """Write the rows of the plots of one line; return how many."""
-    beside = 0
+def _plots_of_line(measured, line, reach, beside):  # type: ignore[no-untyped-def]
+    """Write the rows of the plots of one line to `beside.chosen`; return how many."""
+    x, y, near = measured.position[:, 0], measured.position[:, 1], beside.near
+    count = 0
     for plot in range(len(x)):
-        if abs(x[plot] * cosine + y[plot] * sine - rho) <= half_width:
-            near[beside] = plot
-            along[beside] = y[plot] * cosine - x[plot] * sine
-            near_time[beside] = time[plot]
-            near_scan[beside] = scan[plot]
-            beside += 1
-    if beside == 0:
+        if abs(x[plot] * line.cosine + y[plot] * line.sine - line.rho) <= reach.half_width:
+            near[count] = plot
+            beside.along[count] = y[plot] * line.cosine - x[plot] * line.sine
+            beside.time[count] = measured.time[plot]
+            beside.scan[count] = measured.scan[plot]
+            count += 1
+    if count == 0:
         return 0
-    scans, start, speed = _motion(along[:beside], near_time[:beside], near_scan[:beside], gate)
+    scans, start, speed = _motion(beside.along[:count], beside.time[:count], beside.scan[:count], reach.gate)
     if scans < 2:
         closest = 0
-        for k in range(beside):
-            miss = abs(x[near[k]] * cosine + y[near[k]] * sine - rho)
-            if miss < abs(x[near[closest]] * cosine + y[near[closest]] * sine - rho):
+        for k in range(count):
+            miss = abs(x[near[k]] * line.cosine + y[near[k]] * line.sine - line.rho)
+            if miss < abs(x[near[closest]] * line.cosine + y[near[closest]] * line.sine - line.rho):
                 closest = k
-        rows[0] = near[closest]
+        beside.chosen[0] = near[closest]
         return 1
+    near = near[:count]
     # The gate across the line is that of the strip; only what lies along it is tested at first.
-    at_x, at_y = rho * cosine - start * sine, rho * sine + start * cosine
-    wide = np.hypot(gate, half_width)
-    count = _choose(
-        x, y, time, scan, near[:beside], at_x, at_y, -speed * sine, speed * cosine, 0.0, wide, rows
+    wide = np.hypot(reach.gate, reach.half_width)
+    state = beside.fitting.fit.state
+    state[0, 0], state[0, 1] = (
+        line.rho * line.cosine - start * line.sine,
+        line.rho * line.sine + start * line.cosine,
     )
+    state[1, 0], state[1, 1] = -speed * line.sine, speed * line.cosine
+    held = _choose(measured, near, Motion(state[0], state[1], 0.0), wide, beside.chosen)
     for _ in range(REFINEMENTS):
-        at_x, at_y, speed_x, speed_y, at_time, settled = _fit(x, y, time, rows, count)
-        if not settled:
+        motion, is_settled = _fitted_motion(measured, beside.chosen[:held], beside.fitting)
+        if not is_settled:
             break
-        chosen = _choose(x, y, time, scan, near[:beside], at_x, at_y, speed_x, speed_y, at_time, gate, rows)
-        if chosen < 2:
+        refined = _choose(measured, near, motion, reach.gate, beside.chosen)
+        if refined < 2:
             # The plots lie too loosely for the gate: the motion stands on its first choice.
-            count = _choose(
-                x, y, time, scan, near[:beside], at_x, at_y, speed_x, speed_y, at_time, wide, rows
-            )
+            held = _choose(measured, near, motion, wide, beside.chosen)
             break
-        count = chosen
-    return count
+        held = refined
+    return held
 
 
 @kernel
-def _associate(x, y, time, scan, offsets, track_offsets, cosine, sine, rho, half_width, gate, scans):  # type: ignore[no-untyped-def]
-    plots = np.full((len(rho), scans), -1, np.int64)
-    largest = 1
+def _associate(measured, offsets, track_offsets, cosine, sine, rho, reach, beside, plots):  # type: ignore[no-untyped-def]
+    """Write the plots of each line of each trial."""
     for trial in range(len(offsets) - 1):
-        largest = max(largest, offsets[trial + 1] - offsets[trial])
-    near, rows = np.empty(largest, np.int64), np.empty(largest, np.int64)
-    along, near_time = np.empty(largest, np.float64), np.empty(largest, np.float64)
-    near_scan = np.empty(largest, np.int32)
-    for trial in range(len(offsets) - 1):
-        first, end = offsets[trial], offsets[trial + 1]
+        own = part_of(measured, offsets[trial], offsets[trial + 1])
         for track in range(track_offsets[trial], track_offsets[trial + 1]):
-            count = _plots_of_line(
-                x[first:end], y[first:end], time[first:end], scan[first:end],
-                cosine[track], sine[track], rho[track], half_width, gate,
-                near, along, near_time, near_scan, rows,
-            )  # fmt: skip
-            plots[track, :count] = rows[:count]
-    return plots
+            line = Line(cosine[track], sine[track], rho[track])
+            count = _plots_of_line(own, line, reach, beside)
+            plots[track, :count] = beside.chosen[:count]
 
 
 def associate(chunk: PlotChunk, tracks: TrackChunk, half_width: float, gate: float) -> TrackChunk:
@@ -172,12 +214,12 @@ def associate(chunk: PlotChunk, tracks: TrackChunk, half_width: float, gate: flo
     half_width : greatest distance of a plot from the line
     gate : greatest distance of a plot from the fitted motion
     """
-    x, y = (np.ascontiguousarray(chunk.position[:, axis]) for axis in (0, 1))
     # A scan number is no bound for the width: recordings may begin anywhere.
-    scans = _most_scans(chunk)
-    plots = _associate(
-        x, y, chunk.time, chunk.scan, chunk.offsets, tracks.offsets,
-        np.cos(tracks.theta), np.sin(tracks.theta), tracks.rho, half_width, gate, scans,
+    plots = np.full((len(tracks.rho), _most_scans(chunk)), -1, np.int64)
+    _associate(
+        Measured.of(chunk, None, 2), chunk.offsets, tracks.offsets,
+        np.cos(tracks.theta), np.sin(tracks.theta), tracks.rho,
+        Reach(float(half_width), float(gate)), Beside.of(max(1, chunk.largest)), plots,
     )  # fmt: skip
     return replace(tracks, plots=plots)
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable
 from functools import cache, cached_property, update_wrapper
+from operator import attrgetter
 from typing import Any
 
 from algorithms.kernel_cache.folder import kernel_folder
@@ -28,6 +30,10 @@ class Kernel:
         """Return what the function returns."""
         return self.compiled(*arguments)
 
+    def __reduce__(self) -> tuple[Callable[..., Any], tuple[str, str]]:
+        """Return where the kernel is: numba knows a kernel made by a function by what it calls."""
+        return _named, (self.function.__module__, self.function.__qualname__)
+
     @cached_property
     def compiled(self) -> Any:
         """The dispatcher that numba makes of the function; with `NUMBA_DISABLE_JIT` the function itself."""
@@ -43,6 +49,10 @@ class Kernel:
         if folder is not None and dispatcher is not self.function:
             dispatcher._cache = OverloadCache(folder, self.function)
         return dispatcher
+
+
+def _named(module: str, name: str) -> Any:
+    return attrgetter(name)(importlib.import_module(module))
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:

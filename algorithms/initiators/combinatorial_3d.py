@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Self
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,22 +12,16 @@ from pydantic import Field
 
 from algorithms.compiled import kernel
 from algorithms.context import Context
+from algorithms.initiators.in_space import MotionParameters, SpaceInitiator, station_of
+from algorithms.kinematics.constant_velocity import Motion, squared_miss
+from algorithms.kinematics.least_squares import add_plot, fit
+from algorithms.kinematics.matrices import SPACE
+from algorithms.kinematics.pairs import components, pairs_within_reach
+from algorithms.kinematics.track_search import TrackRule
 from algorithms.parameters import Auto, Count, Dimension, Positive, parameter
-from algorithms.plots import PlotChunk, Plots
-from algorithms.space.motion import MOST_FOUND, chi_square_limits, write_track
-from algorithms.space.noise import covariances, in_space
-from algorithms.space.pairs import components, pairs_within_reach
+from algorithms.plots import Plots
 from algorithms.space.planes import PLANES, PlaneVotes, confirm, votes_of_pairs
-from algorithms.space.tracks import (
-    LEAST_PLOTS,
-    STEPS,
-    MotionParameters,
-    SpaceInitiator,
-    track_chunk,
-    tracks_along,
-    with_track_room,
-)
-from algorithms.tracks import TrackChunk
+from algorithms.space.trial_loop import LEAST_PLOTS, STEPS, fitted_tracks, trial_loop, with_track
 
 WINDOW_DEG = {"sound": 90.0, "document": 20.0}
 WINDOW_LENGTH = {"sound": 800.0, "document": 20_000.0}
@@ -79,43 +74,61 @@ class CombinatorialParameters(MotionParameters):
         return resolved.model_copy(update=update)
 
 
+class Windows(NamedTuple):
+    """Windows of votes in three planes, and what in them confirms a plot.
+
+    Attributes
+    ----------
+    station : float64 (3,), from where d is measured in the document's mode
+    width, height : of a window, in radians and in length
+    least_votes : the least votes of a window
+    least_planes : in how many planes a plot must be confirmed
+    is_document : whether d is measured from the station in fixed cells of θ
+    """
+
+    station: NDArray[np.float64]
+    width: float
+    height: float
+    least_votes: int
+    least_planes: int
+    is_document: bool
+
+
 @kernel
-def _votes(  # type: ignore[no-untyped-def]
-    position, pairs, groups, station, is_document, width, height, least_votes, planes
-):
+def _votes(position, pairs, groups, windows):  # type: ignore[no-untyped-def]
     """Return the votes of each pair in each plane: θ, d and whether it is confirmed."""
     count = len(pairs)
-    theta, distance = np.empty((len(planes), count)), np.empty((len(planes), count))
-    confirmed = np.zeros((len(planes), count), np.bool_)
+    theta, distance = np.empty((len(PLANES), count)), np.empty((len(PLANES), count))
+    confirmed = np.zeros((len(PLANES), count), np.bool_)
     inside, sorted_in = np.empty(count, np.int64), np.empty(count)
     own_theta, own_distance, is_own = np.empty(count), np.empty(count), np.empty(count, np.bool_)
     group_of = np.empty(count, np.int64)
     for pair in range(count):
         group_of[pair] = groups[pairs[pair, 0]]
     order = np.argsort(group_of, kind="mergesort")
-    centre = station.copy()
+    centre = windows.station.copy()
     first = 0
     while first < count:
         end = first
         while end < count and group_of[order[end]] == group_of[order[first]]:
             end += 1
         chosen = order[first:end]
-        if not is_document:
+        if not windows.is_document:
             # The mean over the ends of pairs: each plot counts as often as it votes.
             centre[:] = 0.0
             for pair in chosen:
                 for axis in range(3):
                     both = position[pairs[pair, 0], axis] + position[pairs[pair, 1], axis]
                     centre[axis] += 0.5 * both / len(chosen)
-        for plane in range(len(planes)):
+        for plane in range(len(PLANES)):
             votes_of_pairs(
-                position, pairs, chosen, planes[plane, 0], planes[plane, 1], centre, own_theta, own_distance
+                position, pairs, chosen, PLANES[plane, 0], PLANES[plane, 1], centre, own_theta, own_distance
             )
             is_own[: len(chosen)] = False
-            if len(chosen) >= least_votes:
+            if len(chosen) >= windows.least_votes:
                 confirm(
-                    own_theta, own_distance, len(chosen), width, height, is_document, least_votes, is_own,
-                    inside, sorted_in,
+                    own_theta, own_distance, len(chosen), windows.width, windows.height,
+                    windows.is_document, windows.least_votes, is_own, inside, sorted_in,
                 )  # fmt: skip
             for vote in range(len(chosen)):
                 theta[plane, chosen[vote]], distance[plane, chosen[vote]] = (
@@ -148,18 +161,41 @@ def _planes_of_plots(count, pairs, confirmed):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _nearest_of_scans(position, time, scan, weight, rows, count, chosen):  # type: ignore[no-untyped-def]
-    """Write of each scan the plot that lies nearest to the motion fitted to all; return how many scans."""
-    plots, state = np.full((1, count), -1, np.int64), np.empty((1, 2, 3))
-    write_track(position, time, weight, rows[:count], plots, state, 0)
+def _usable_plots(measured, pairs, windows):  # type: ignore[no-untyped-def]
+    """Return which plots are confirmed in enough planes, and the number of pairs that voted."""
+    count = len(measured.time)
+    usable = np.zeros(count, np.bool_)
+    if len(pairs) >= windows.least_votes:
+        groups = _groups(count, pairs, windows.is_document)
+        _, _, confirmed = _votes(measured.position, pairs, groups, windows)
+        numbers = _planes_of_plots(count, pairs, confirmed)
+        for plot in range(count):
+            usable[plot] = numbers[plot] >= windows.least_planes
+    return usable, len(pairs)
+
+
+@kernel
+def _nearest_of_scans(measured, rows, count, space, chosen):  # type: ignore[no-untyped-def]
+    """Write of each scan the plot that lies nearest to the motion fitted to all; return how many scans.
+
+    Parameters
+    ----------
+    rows : int64, the plots, the first `count` of them
+    space : `Fitting`
+    chosen : int64 (≥ scans,), written
+    """
+    start, fitted = rows[0], space.fit.state
+    for k in range(count):
+        add_plot(space.sums, min(k, 1), 1, measured, rows[k], start, SPACE)
+    fit(space.sums, 1, space.fit, SPACE)
+    for axis in range(3):
+        fitted[0, axis] += measured.position[start, axis]
+    motion = Motion(fitted[0], fitted[1], measured.time[start])
     number, nearest = 0, np.inf
     for k in range(count):
         plot = rows[k]
-        miss = 0.0
-        for axis in range(3):
-            at = state[0, 0, axis] + state[0, 1, axis] * (time[plot] - time[rows[0]])
-            miss += (position[plot, axis] - at) ** 2
-        if number == 0 or scan[plot] != scan[chosen[number - 1]]:
+        miss = squared_miss(motion, measured, plot, SPACE)
+        if number == 0 or measured.scan[plot] != measured.scan[chosen[number - 1]]:
             chosen[number] = plot
             number += 1
             nearest = miss
@@ -170,15 +206,19 @@ def _nearest_of_scans(position, time, scan, weight, rows, count, chosen):  # typ
 
 
 @kernel
-def _connected_tracks(position, time, scan, weight, pairs, kept, plots, state, count):  # type: ignore[no-untyped-def]
-    """Append each set of plots from three scans or more that kept pairs connect, one plot a scan."""
-    groups = components(len(position), pairs, kept)
-    rows, chosen = np.empty(len(position), np.int64), np.empty(len(position), np.int64)
-    for group in range(len(position)):
+def _connected_tracks(measured, pairs, kept, usable, rule, made, table, count):  # type: ignore[no-untyped-def]
+    """Append each set of plots from three scans or more that kept pairs connect, one plot a scan.
+
+    Arguments and results are those of `fitted_tracks`.
+    """
+    scan = measured.scan
+    groups = components(len(scan), pairs, kept)
+    rows, chosen = np.empty(len(scan), np.int64), np.empty(len(scan), np.int64)
+    for group in range(len(scan)):
         if groups[group] != group:
             continue
         members = 0
-        for plot in range(group, len(position)):
+        for plot in range(group, len(scan)):
             if groups[plot] == group:
                 rows[members] = plot
                 members += 1
@@ -186,53 +226,10 @@ def _connected_tracks(position, time, scan, weight, pairs, kept, plots, state, c
         for k in range(members):
             scans += k == 0 or scan[rows[k]] != scan[rows[k - 1]]
         if scans >= LEAST_PLOTS:
-            number = _nearest_of_scans(position, time, scan, weight, rows, members, chosen)
-            plots, state = with_track_room(plots, state, count + 1)
-            write_track(position, time, weight, chosen[:number], plots, state, count)
+            number = _nearest_of_scans(measured, rows, members, made.fitting, chosen)
+            table = with_track(table, count, measured, chosen[:number], made.fitting)
             count += 1
-    return plots, state, count
-
-
-@kernel
-def _combinatorial(  # type: ignore[no-untyped-def]
-    position, time, scan, covariance, weight, offsets, station, planes, deepest,
-    slowest, fastest, allowance, width, height, least_votes, least_planes, is_document, least, limits,
-):  # fmt: skip
-    trials = len(offsets) - 1
-    found_by_trial = np.zeros(trials + 1, np.int64)
-    tried, gated = np.zeros(trials, np.int64), np.zeros(trials, np.int64)
-    plots, state = np.full((trials + 8, deepest), -1, np.int64), np.empty((trials + 8, 2, 3))
-    found, squares = np.empty((MOST_FOUND, deepest), np.int64), np.empty(MOST_FOUND)
-    count, is_full = 0, False
-    for trial in range(trials):
-        begin, end = offsets[trial], offsets[trial + 1]
-        place, when, of_scan = position[begin:end], time[begin:end], scan[begin:end]
-        noise, weights = covariance[begin:end], weight[begin:end]
-        pairs, every = pairs_within_reach(place, when, of_scan, noise, slowest, fastest, allowance, STEPS)
-        tried[trial], gated[trial] = every, len(pairs)
-        if len(pairs) >= least_votes:
-            groups = _groups(len(place), pairs, is_document)
-            _, _, confirmed = _votes(
-                place, pairs, groups, station, is_document, width, height, least_votes, planes
-            )
-            numbers = _planes_of_plots(len(place), pairs, confirmed)
-            usable, kept = np.empty(len(place), np.bool_), np.empty(len(pairs), np.bool_)
-            for plot in range(len(place)):
-                usable[plot] = numbers[plot] >= least_planes
-            for pair in range(len(pairs)):
-                kept[pair] = usable[pairs[pair, 0]] and usable[pairs[pair, 1]]
-            if is_document:
-                plots, state, count = _connected_tracks(
-                    place, when, of_scan, weights, pairs, kept, plots, state, count
-                )
-            else:
-                plots, state, count, full = tracks_along(
-                    place, when, weights, pairs, kept, usable, least, limits, slowest, fastest, allowance,
-                    planes[:0], found, squares, plots, state, count,
-                )  # fmt: skip
-                is_full = is_full or full
-        found_by_trial[trial + 1] = count
-    return found_by_trial, plots[:count], state[:count], tried, gated, is_full
+    return table, count, False
 
 
 class Combinatorial3D(SpaceInitiator):
@@ -258,29 +255,35 @@ class Combinatorial3D(SpaceInitiator):
     source = "Wang and Zhao, Electronics Optics & Control, 2014"
     parameters = CombinatorialParameters
 
-    def initiate_chunk(
-        self, chunk: PlotChunk, context: Context, parameters: CombinatorialParameters
-    ) -> TrackChunk:
-        """Return the tracks of each trial, with their plots.
+    tracks_of_trials = trial_loop(_usable_plots, fitted_tracks)
+    connected_of_trials = trial_loop(_usable_plots, _connected_tracks)
 
-        Raises
-        ------
-        RequestError
-            Where plots have no z, their noise is not known, or too many tracks fit them.
-        """
-        in_space(chunk, self.name)
-        is_document = parameters.mode == "document"
-        noise = covariances(chunk, context)
-        deepest = max(context.scans, LEAST_PLOTS)
-        offsets, plots, state, tried, gated, is_full = _combinatorial(
-            np.ascontiguousarray(chunk.position), chunk.time, chunk.scan, noise, np.linalg.inv(noise),
-            chunk.offsets, _station(context), PLANES, deepest, parameters.speed_min, parameters.speed_max,
-            _allowance(parameters), math.radians(float(parameters.window_deg)), parameters.window_length,
-            parameters.votes, parameters.planes, is_document, parameters.plots,
-            chi_square_limits(parameters.confidence, deepest),
-        )  # fmt: skip
-        effort = {"pairs": tried, "pairs_gated": gated}
-        return track_chunk(self.name, offsets, plots, state, effort, is_full=is_full)
+    def kernel_of(self, parameters: CombinatorialParameters) -> Callable[..., Any]:
+        """Return the kernel that finds the tracks of each trial: in the document's mode nothing is fitted."""
+        both = type(self).connected_of_trials, type(self).tracks_of_trials
+        return both[parameters.mode == "sound"]
+
+    def sieve(self, context: Context, parameters: CombinatorialParameters) -> Windows:
+        """Return the windows that confirm plots."""
+        return Windows(
+            station_of(context),
+            math.radians(float(parameters.window_deg)),
+            float(parameters.window_length),
+            int(parameters.votes),
+            parameters.planes,
+            parameters.mode == "document",
+        )
+
+    def rule(self, context: Context, parameters: CombinatorialParameters) -> TrackRule:
+        """Return what makes plots a track; in the document's mode nothing is allowed for noise."""
+        rule = super().rule(context, parameters)
+        if parameters.mode == "sound":
+            return rule
+        return rule._replace(gate=rule.gate._replace(allowance=0.0))
+
+    def confirming_plots(self, parameters: CombinatorialParameters) -> int:
+        """Return with how many plots a track can be declared: the least `plots`, or three without a fit."""
+        return int(parameters.plots) if parameters.mode == "sound" else LEAST_PLOTS
 
     def plane_votes(self, plots: Plots, context: Context, parameters: CombinatorialParameters) -> PlaneVotes:
         """Return the votes of all pairs that pass the gate.
@@ -293,28 +296,13 @@ class Combinatorial3D(SpaceInitiator):
         RequestError
             Where plots have no z, or their noise is not known.
         """
-        chunk = plots.chunk()
-        in_space(chunk, self.name)
-        is_document = parameters.mode == "document"
-        position = np.ascontiguousarray(chunk.position)
-        pairs, tried = pairs_within_reach(
-            position, chunk.time, chunk.scan, covariances(chunk, context), parameters.speed_min,
-            parameters.speed_max, _allowance(parameters), STEPS,
-        )  # fmt: skip
-        window = math.radians(float(parameters.window_deg)), float(parameters.window_length)
-        theta, distance, confirmed = _votes(
-            position, pairs, _groups(len(position), pairs, is_document), _station(context), is_document,
-            *window, parameters.votes, PLANES,
-        )  # fmt: skip
-        return PlaneVotes(pairs, theta, distance, confirmed, int(tried), window, int(parameters.votes))
-
-
-def _station(context: Context) -> NDArray[np.float64]:
-    return np.zeros(3) if context.station is None else np.array(context.station, dtype=float)
-
-
-def _allowance(parameters: CombinatorialParameters) -> float:
-    return 0.0 if parameters.mode == "document" else parameters.allowance
+        measured = self.measured(plots.chunk(), context)
+        windows = self.sieve(context, parameters)
+        pairs, tried = pairs_within_reach(measured, self.rule(context, parameters).gate, STEPS, SPACE)
+        groups = _groups(len(plots), pairs, windows.is_document)
+        theta, distance, confirmed = _votes(measured.position, pairs, groups, windows)
+        window = windows.width, windows.height
+        return PlaneVotes(pairs, theta, distance, confirmed, int(tried), window, windows.least_votes)
 
 
 INITIATOR = Combinatorial3D()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import Annotated, Any
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,20 +12,9 @@ from pydantic import Field
 
 from algorithms.compiled import kernel
 from algorithms.context import Context
+from algorithms.initiators.in_space import MotionParameters, SpaceInitiator
 from algorithms.parameters import Auto, Count, Dimension, Positive, parameter
-from algorithms.plots import PlotChunk
-from algorithms.space.motion import MOST_FOUND, chi_square_limits
-from algorithms.space.noise import covariances, in_space
-from algorithms.space.pairs import pairs_within_reach
-from algorithms.space.tracks import (
-    LEAST_PLOTS,
-    STEPS,
-    MotionParameters,
-    SpaceInitiator,
-    track_chunk,
-    tracks_along,
-)
-from algorithms.tracks import TrackChunk
+from algorithms.space.trial_loop import fitted_tracks, trial_loop
 
 Array = NDArray[np.float64]
 
@@ -207,7 +196,7 @@ def _lines(position, covariance, around, cell, most, least, usable):  # type: ig
         return
     if cell <= 0.0:
         noise = 0.0
-        for plot in range(count):
+        for plot in range(len(covariance)):
             noise = max(noise, covariance[plot, 0, 0] + covariance[plot, 1, 1] + covariance[plot, 2, 2])
         cell = max(extent / CELLS_ACROSS, NOISE_IN_CELL * math.sqrt(noise))
     # No plot is farther from the middle than half the diagonal of its box.
@@ -253,39 +242,35 @@ def _lines(position, covariance, around, cell, most, least, usable):  # type: ig
             return
 
 
+class Lines(NamedTuple):
+    """Lines that are sought among plots.
+
+    Attributes
+    ----------
+    around : float64 (directions, 3), unit vectors
+    cell : width of a cell across a direction; 0 for the default, which depends on the plots
+    most : how many lines are taken at most
+    least : the least votes of a line
+    """
+
+    around: Array
+    cell: float
+    most: int
+    least: int
+
+
 @kernel
-def _lines_and_time(  # type: ignore[no-untyped-def]
-    position, time, scan, covariance, weight, offsets, around, cell, most, deepest,
-    slowest, fastest, allowance, least, limits,
-):  # fmt: skip
-    trials = len(offsets) - 1
-    found_by_trial = np.zeros(trials + 1, np.int64)
-    tried, gated = np.zeros(trials, np.int64), np.zeros(trials, np.int64)
-    plots, state = np.full((trials + 8, deepest), -1, np.int64), np.empty((trials + 8, 2, 3))
-    found, squares = np.empty((MOST_FOUND, deepest), np.int64), np.empty(MOST_FOUND)
-    count, is_full = 0, False
-    everywhere = np.zeros((0, 2), np.int64)
-    for trial in range(trials):
-        begin, end = offsets[trial], offsets[trial + 1]
-        place, when, of_scan = position[begin:end], time[begin:end], scan[begin:end]
-        usable = np.zeros(len(place), np.bool_)
-        if len(place) >= least:
-            _lines(place, covariance[begin:end], around, cell, most, least, usable)
-        pairs, every = pairs_within_reach(
-            place, when, of_scan, covariance[begin:end], slowest, fastest, allowance, STEPS
+def _usable_plots(measured, pairs, lines):  # type: ignore[no-untyped-def]
+    """Return which plots lie on lines, and the number of pairs between these."""
+    usable = np.zeros(len(measured.time), np.bool_)
+    if len(measured.time) >= lines.least:
+        _lines(
+            measured.position, measured.covariance, lines.around, lines.cell, lines.most, lines.least, usable
         )
-        tried[trial] = every
-        kept = np.empty(len(pairs), np.bool_)
-        for pair in range(len(pairs)):
-            kept[pair] = usable[pairs[pair, 0]] and usable[pairs[pair, 1]]
-        gated[trial] = kept.sum()
-        plots, state, count, full = tracks_along(
-            place, when, weight[begin:end], pairs, kept, usable, least, limits, slowest, fastest, allowance,
-            everywhere, found, squares, plots, state, count,
-        )  # fmt: skip
-        is_full = is_full or full
-        found_by_trial[trial + 1] = count
-    return found_by_trial, plots[:count], state[:count], tried, gated, is_full
+    left = 0
+    for pair in range(len(pairs)):
+        left += usable[pairs[pair, 0]] and usable[pairs[pair, 1]]
+    return usable, left
 
 
 class Hough3D(SpaceInitiator):
@@ -308,26 +293,12 @@ class Hough3D(SpaceInitiator):
     source = "Dalitz, Schramke and Jeltsch, Image Processing On Line, 2017"
     parameters = Hough3DParameters
 
-    def initiate_chunk(self, chunk: PlotChunk, context: Context, parameters: Any) -> TrackChunk:
-        """Return the tracks of each trial, with their plots.
+    tracks_of_trials = trial_loop(_usable_plots, fitted_tracks)
 
-        Raises
-        ------
-        RequestError
-            Where plots have no z, their noise is not known, or too many tracks fit them.
-        """
-        in_space(chunk, self.name)
-        noise = covariances(chunk, context)
-        deepest = max(context.scans, LEAST_PLOTS)
-        offsets, plots, state, tried, gated, is_full = _lines_and_time(
-            np.ascontiguousarray(chunk.position), chunk.time, chunk.scan, noise, np.linalg.inv(noise),
-            chunk.offsets, directions(parameters.tessellation),
-            0.0 if parameters.cell == "auto" else parameters.cell, parameters.lines, deepest,
-            parameters.speed_min, parameters.speed_max, parameters.allowance, parameters.plots,
-            chi_square_limits(parameters.confidence, deepest),
-        )  # fmt: skip
-        effort = {"pairs": tried, "pairs_gated": gated}
-        return track_chunk(self.name, offsets, plots, state, effort, is_full=is_full)
+    def sieve(self, context: Context, parameters: Hough3DParameters) -> Lines:
+        """Return which lines are sought."""
+        cell = 0.0 if parameters.cell == "auto" else float(parameters.cell)
+        return Lines(directions(parameters.tessellation), cell, parameters.lines, int(parameters.plots))
 
 
 INITIATOR = Hough3D()

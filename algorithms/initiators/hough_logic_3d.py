@@ -3,27 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal, NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from algorithms.compiled import kernel
 from algorithms.context import Context
+from algorithms.initiators.in_space import MotionParameters, SpaceInitiator, station_of
+from algorithms.kinematics.track_search import TrackRule
 from algorithms.parameters import Auto, Count, Dimension, Positive, parameter
-from algorithms.plots import PlotChunk
-from algorithms.space.motion import MOST_FOUND, chi_square_limits
-from algorithms.space.noise import covariances, in_space
-from algorithms.space.pairs import pairs_within_reach
-from algorithms.space.tracks import (
-    LEAST_PLOTS,
-    STEPS,
-    MotionParameters,
-    SpaceInitiator,
-    track_chunk,
-    tracks_along,
-)
-from algorithms.tracks import TrackChunk
+from algorithms.space.trial_loop import LEAST_PLOTS, fitted_tracks, trial_loop
 
 AXES = {"xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
 Plane = Literal["xy", "xz", "yz"]
@@ -96,40 +87,44 @@ def _pass_gate(position, station, across, up, rows, step, length, votes, passed)
                 passed[plot] = True
 
 
+class CoarseCells(NamedTuple):
+    """Cells of the accumulators of two planes.
+
+    Attributes
+    ----------
+    station : float64 (3,), from where d is measured
+    planes : int64 (2, 2), axes of the planes
+    rows : number of directions θ
+    step, length : height Δθ and width Δd of a cell, in radians and in length
+    votes : the least votes of a cell
+    """
+
+    station: NDArray[np.float64]
+    planes: NDArray[np.int64]
+    rows: int
+    step: float
+    length: float
+    votes: int
+
+
 @kernel
-def _gates_and_logic(  # type: ignore[no-untyped-def]
-    position, time, scan, covariance, weight, offsets, station, planes, deepest, rows, step, length,
-    in_planes, slowest, fastest, allowance, least, limits,
-):  # fmt: skip
-    trials = len(offsets) - 1
-    found_by_trial = np.zeros(trials + 1, np.int64)
-    tried, gated = np.zeros(trials, np.int64), np.zeros(trials, np.int64)
-    plots, state = np.full((trials + 8, deepest), -1, np.int64), np.empty((trials + 8, 2, 3))
-    found, squares = np.empty((MOST_FOUND, deepest), np.int64), np.empty(MOST_FOUND)
-    count, is_full = 0, False
-    for trial in range(trials):
-        begin, end = offsets[trial], offsets[trial + 1]
-        place, when, of_scan = position[begin:end], time[begin:end], scan[begin:end]
-        noise, weights = covariance[begin:end], weight[begin:end]
-        usable = np.ones(len(place), np.bool_)
-        for plane in range(2):
-            passed = np.zeros(len(place), np.bool_)
-            _pass_gate(place, station, planes[plane, 0], planes[plane, 1], rows, step, length, least, passed)
-            for plot in range(len(place)):
-                usable[plot] = usable[plot] and passed[plot]
-        pairs, every = pairs_within_reach(place, when, of_scan, noise, slowest, fastest, allowance, STEPS)
-        tried[trial] = every
-        kept = np.empty(len(pairs), np.bool_)
-        for pair in range(len(pairs)):
-            kept[pair] = usable[pairs[pair, 0]] and usable[pairs[pair, 1]]
-        gated[trial] = kept.sum()
-        plots, state, count, full = tracks_along(
-            place, when, weights, pairs, kept, usable, least, limits, slowest, fastest, allowance,
-            planes if in_planes else planes[:0], found, squares, plots, state, count,
+def _usable_plots(measured, pairs, cells):  # type: ignore[no-untyped-def]
+    """Return which plots pass the gates of both planes, and the number of pairs between these."""
+    count = len(measured.time)
+    usable = np.ones(count, np.bool_)
+    for plane in range(2):
+        passed = np.zeros(count, np.bool_)
+        across, up = cells.planes[plane, 0], cells.planes[plane, 1]
+        _pass_gate(
+            measured.position, cells.station, across, up, cells.rows, cells.step, cells.length, cells.votes,
+            passed,
         )  # fmt: skip
-        is_full = is_full or full
-        found_by_trial[trial + 1] = count
-    return found_by_trial, plots[:count], state[:count], tried, gated, is_full
+        for plot in range(count):
+            usable[plot] = usable[plot] and passed[plot]
+    left = 0
+    for pair in range(len(pairs)):
+        left += usable[pairs[pair, 0]] and usable[pairs[pair, 1]]
+    return usable, left
 
 
 class HoughLogic3D(SpaceInitiator):
@@ -153,31 +148,32 @@ class HoughLogic3D(SpaceInitiator):
     source = "Wang, Su and He, Journal of System Simulation, 2004"
     parameters = HoughLogicParameters
 
-    def initiate_chunk(
-        self, chunk: PlotChunk, context: Context, parameters: HoughLogicParameters
-    ) -> TrackChunk:
-        """Return the tracks of each trial, with their plots.
+    tracks_of_trials = trial_loop(_usable_plots, fitted_tracks)
 
-        Raises
-        ------
-        RequestError
-            Where plots have no z, their noise is not known, or too many tracks fit them.
-        """
-        in_space(chunk, self.name)
-        noise = covariances(chunk, context)
-        deepest = max(context.scans, LEAST_PLOTS)
-        station = np.zeros(3) if context.station is None else np.array(context.station, dtype=float)
+    def sieve(self, context: Context, parameters: HoughLogicParameters) -> CoarseCells:
+        """Return the cells in which plots must lie."""
         rows = max(2, round(180.0 / parameters.cell_deg))
-        offsets, plots, state, tried, gated, is_full = _gates_and_logic(
-            np.ascontiguousarray(chunk.position), chunk.time, chunk.scan, noise, np.linalg.inv(noise),
-            chunk.offsets, station,
-            np.array([AXES[parameters.first_plane], AXES[parameters.second_plane]]),
-            deepest, rows, math.pi / rows, parameters.cell_length, parameters.speed_gate == "planes",
-            parameters.speed_min, parameters.speed_max, parameters.allowance, parameters.plots,
-            chi_square_limits(parameters.confidence, deepest),
-        )  # fmt: skip
-        effort = {"pairs": tried, "pairs_gated": gated}
-        return track_chunk(self.name, offsets, plots, state, effort, is_full=is_full)
+        return CoarseCells(
+            station_of(context),
+            self._planes(parameters),
+            rows,
+            math.pi / rows,
+            float(parameters.cell_length),
+            int(parameters.plots),
+        )
+
+    def rule(self, context: Context, parameters: HoughLogicParameters) -> TrackRule:
+        """Return what makes plots a track: with `speed_gate: planes` the least speed in both planes, too."""
+        rule = super().rule(context, parameters)
+        return rule._replace(planes=self._planes(parameters)) if parameters.speed_gate == "planes" else rule
+
+    def confirming_plots(self, parameters: HoughLogicParameters) -> int:
+        """Return with how many plots a track can be declared: with m of n the m-th."""
+        return int(parameters.plots)
+
+    @staticmethod
+    def _planes(parameters: HoughLogicParameters) -> NDArray[np.int64]:
+        return np.array([AXES[parameters.first_plane], AXES[parameters.second_plane]])
 
 
 INITIATOR = HoughLogic3D()

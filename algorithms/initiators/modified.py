@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from algorithms.compiled import kernel
 from algorithms.context import Context
 from algorithms.errors import RequestError
 from algorithms.hough.lines import line_through
 from algorithms.initiators.base import ChunkInitiator
-from algorithms.parameters import Auto, Dimension, NotNegative, Parameters, Positive, parameter
+from algorithms.initiators.speeds import SpeedParameters
+from algorithms.kinematics.gates import SpeedGate, can_fly
+from algorithms.kinematics.strips import by_x, strip
+from algorithms.parameters import Auto, Dimension, NotNegative, Positive, parameter
 from algorithms.plots import PlotChunk
 from algorithms.tracks import TrackChunk
 
 LARGEST_RESULT = 2_000_000
 """The most triples that one chunk may give."""
 
-SLOWEST, FASTEST = 50.0, 700.0
-"""Default speeds, in m/s."""
 
-
-class ModifiedParameters(Parameters):
+class ModifiedParameters(SpeedParameters):
     """The parameters of `modified`."""
+
+    fastest = 700.0
 
     speed_min: NotNegative | Auto = parameter(
         "auto", dimension=Dimension.SPEED, help="the least speed between two scans", auto="50 m/s"
@@ -42,109 +44,95 @@ class ModifiedParameters(Parameters):
         "the slopes, as the source's program does",
     )
 
-    @model_validator(mode="after")
-    def _speeds_in_order(self) -> Self:
-        if not isinstance(self.speed_min, str) and not isinstance(self.speed_max, str):
-            if self.speed_min >= self.speed_max:
-                raise ValueError(
-                    f"speed_min {self.speed_min:g} is given with speed_max {self.speed_max:g}; "
-                    "speed_min must be the smaller one"
-                )
-        return self
 
-    def resolved(self, context: Context) -> Self:
-        """Return these parameters with the speeds worked out from the unit.
+class Steadiness(NamedTuple):
+    """What makes three plots a track.
 
-        Raises
-        ------
-        RequestError
-            Where one speed is given and lies beyond the other's default.
-        """
-        slowest = SLOWEST / context.unit.metres if self.speed_min == "auto" else self.speed_min
-        fastest = FASTEST / context.unit.metres if self.speed_max == "auto" else self.speed_max
-        if float(slowest) >= float(fastest):
-            raise RequestError(
-                f"modified: speed_min is {float(slowest):g} and speed_max {float(fastest):g} "
-                f"{context.unit}/s; speed_min must be the smaller one; give both"
-            )
-        return self.model_copy(update={"speed_min": float(slowest), "speed_max": float(fastest)})
+    Attributes
+    ----------
+    gate : `SpeedGate`, of both displacements
+    tolerance : the greatest angle between them, radians
+    is_document : whether angles are compared as the source's program does
+    """
+
+    gate: SpeedGate
+    tolerance: float
+    is_document: bool
 
 
 @kernel
-def _one_direction(x1, y1, x2, y2, tolerance, document):  # type: ignore[no-untyped-def]
+def _one_direction(x1, y1, x2, y2, rule):  # type: ignore[no-untyped-def]
     """Return whether two displacements have nearly one direction."""
-    if document:
+    if rule.is_document:
         first, second = math.atan(x1 / -y1), math.atan(x2 / -y2)
-        return abs(first - second) <= tolerance and (y2 / x2) / (y1 / x1) > 0.0
+        return abs(first - second) <= rule.tolerance and (y2 / x2) / (y1 / x1) > 0.0
     dot = x1 * x2 + y1 * y2
-    return dot > 0.0 and dot >= math.cos(tolerance) * math.sqrt((x1 * x1 + y1 * y1) * (x2 * x2 + y2 * y2))
+    lengths = math.sqrt((x1 * x1 + y1 * y1) * (x2 * x2 + y2 * y2))
+    return dot > 0.0 and dot >= math.cos(rule.tolerance) * lengths
 
 
 @kernel
-def _is_gated(x, y, elapsed, slowest, fastest):  # type: ignore[no-untyped-def]
-    length = math.sqrt(x * x + y * y)
-    return elapsed > 0.0 and slowest * elapsed <= length <= fastest * elapsed
+def _can_follow(position, time, first, second, gate):  # type: ignore[no-untyped-def]
+    """Return whether a target can fly from one plot to another, which is a later one."""
+    x, y = position[second, 0] - position[first, 0], position[second, 1] - position[first, 1]
+    elapsed = time[second] - time[first]
+    return elapsed > 0.0 and can_fly(gate, math.sqrt(x * x + y * y), elapsed, 0.0)
 
 
 @kernel
-def _triples(x, y, time, scan, offsets, slowest, fastest, tolerance, document, limit):  # type: ignore[no-untyped-def]
+def _triples_of(position, time, scan, rule, triples, count, limit):  # type: ignore[no-untyped-def]
+    """Append the triples of one trial; return them, their number and whether they are too many."""
+    order, begins = by_x(position, scan)
+    for window in range(len(begins) - 3):
+        first, second = begins[window], begins[window + 1]
+        third, last = begins[window + 2], begins[window + 3]
+        if scan[second] != scan[first] + 1 or scan[third] != scan[first] + 2:
+            continue
+        # Sorted by x, the plots within reach are a short run.
+        middle, ahead = order[second:third], order[third:last]
+        middle_x, ahead_x = position[middle, 0], position[ahead, 0]
+        reach = rule.gate.fastest * (time[second:third].max() - time[first:second].min())
+        reach_on = rule.gate.fastest * (time[third:last].max() - time[second:third].min())
+        for a in range(first, second):
+            begin, end = strip(middle_x, position[a, 0], reach)
+            for b in middle[begin:end]:
+                if not _can_follow(position, time, a, b, rule.gate):
+                    continue
+                x1, y1 = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
+                begin_on, end_on = strip(ahead_x, position[b, 0], reach_on)
+                for c in ahead[begin_on:end_on]:
+                    if not _can_follow(position, time, b, c, rule.gate):
+                        continue
+                    x2, y2 = position[c, 0] - position[b, 0], position[c, 1] - position[b, 1]
+                    if not _one_direction(x1, y1, x2, y2, rule):
+                        continue
+                    if count == limit:
+                        return triples, count, True
+                    if count == len(triples):
+                        larger = np.empty((2 * count, 3), np.int64)
+                        larger[:count] = triples
+                        triples = larger
+                    triples[count, 0], triples[count, 1], triples[count, 2] = a, b, c
+                    count += 1
+    return triples, count, False
+
+
+@kernel
+def _triples(position, time, scan, offsets, rule, limit):  # type: ignore[no-untyped-def]
+    """Return the triples of each trial, where those of each end, and whether there are too many."""
     trials = len(offsets) - 1
-    found = np.zeros(trials + 1, np.int64)
+    ends = np.zeros(trials + 1, np.int64)
     triples = np.empty((4 * trials + 64, 3), np.int64)
     count = 0
     for trial in range(trials):
         begin, end = offsets[trial], offsets[trial + 1]
-        first = begin
-        while first < end:
-            # Three scans in a row: [first, second), [second, third), [third, last).
-            second = first
-            while second < end and scan[second] == scan[first]:
-                second += 1
-            third = second
-            while third < end and scan[third] == scan[first] + 1:
-                third += 1
-            last = third
-            while last < end and scan[last] == scan[first] + 2:
-                last += 1
-            if third > second and last > third:
-                # Sorted by x, the plots within reach are a short run.
-                middle = second + np.argsort(x[second:third])
-                ahead = third + np.argsort(x[third:last])
-                middle_x, ahead_x = x[middle], x[ahead]
-                reach = fastest * (time[second:third].max() - time[first:second].min())
-                reach_on = fastest * (time[third:last].max() - time[second:third].min())
-                for a in range(first, second):
-                    low = np.searchsorted(middle_x, x[a] - reach)
-                    for k in range(low, len(middle)):
-                        if middle_x[k] > x[a] + reach:
-                            break
-                        b = middle[k]
-                        x1, y1 = x[b] - x[a], y[b] - y[a]
-                        if not _is_gated(x1, y1, time[b] - time[a], slowest, fastest):
-                            continue
-                        low_on = np.searchsorted(ahead_x, x[b] - reach_on)
-                        for m in range(low_on, len(ahead)):
-                            if ahead_x[m] > x[b] + reach_on:
-                                break
-                            c = ahead[m]
-                            x2, y2 = x[c] - x[b], y[c] - y[b]
-                            if not _is_gated(x2, y2, time[c] - time[b], slowest, fastest):
-                                continue
-                            if not _one_direction(x1, y1, x2, y2, tolerance, document):
-                                continue
-                            if count == limit:
-                                return triples, found, True
-                            if count == len(triples):
-                                larger = np.empty((2 * count, 3), np.int64)
-                                larger[:count] = triples
-                                triples = larger
-                            triples[count, 0] = a - begin
-                            triples[count, 1] = b - begin
-                            triples[count, 2] = c - begin
-                            count += 1
-            first = second
-        found[trial + 1] = count
-    return triples[:count], found, False
+        triples, count, is_full = _triples_of(
+            position[begin:end], time[begin:end], scan[begin:end], rule, triples, count, limit
+        )
+        if is_full:
+            return triples, ends, True
+        ends[trial + 1] = count
+    return triples[:count], ends, False
 
 
 class Modified(ChunkInitiator):
@@ -169,18 +157,19 @@ class Modified(ChunkInitiator):
     def initiate_chunk(
         self, chunk: PlotChunk, context: Context, parameters: ModifiedParameters
     ) -> TrackChunk:
-        """Return the triples of each trial as tracks; their plots are known at once.
+        """Return the triples of each trial as tracks, with their plots; the third scan confirms each.
 
         Raises
         ------
         RequestError
             Where there are more than `LARGEST_RESULT` triples.
         """
-        x, y = (np.ascontiguousarray(chunk.position[:, axis]) for axis in (0, 1))
+        gate = SpeedGate(float(parameters.speed_min), float(parameters.speed_max))
+        tolerance = math.radians(parameters.angle_tolerance_deg)
+        rule = Steadiness(gate, tolerance, parameters.mode == "document")
         triples, offsets, overflow = _triples(
-            x, y, chunk.time, chunk.scan, chunk.offsets, parameters.speed_min, parameters.speed_max,
-            math.radians(parameters.angle_tolerance_deg), parameters.mode == "document", LARGEST_RESULT,
-        )  # fmt: skip
+            np.ascontiguousarray(chunk.position), chunk.time, chunk.scan, chunk.offsets, rule, LARGEST_RESULT
+        )
         if overflow:
             raise RequestError(
                 f"modified: more than {LARGEST_RESULT:,} triples pass the gates; narrow speed_min and "
@@ -193,7 +182,9 @@ class Modified(ChunkInitiator):
         direction[back] = (place[:, 1] - place[:, 0])[back]
         theta, rho = line_through(place.mean(axis=1), direction)
         score = np.full(len(triples), 3.0)
-        return TrackChunk(offsets, theta, rho, score, np.zeros(chunk.trials, np.int64), triples)
+        confirmed = chunk.scan[rows[:, 2]].astype(np.int64)
+        outside = np.zeros(chunk.trials, np.int64)
+        return TrackChunk(offsets, theta, rho, score, outside, triples, confirmed_scan=confirmed)
 
     def associate_chunk(
         self, chunk: PlotChunk, tracks: TrackChunk, context: Context, parameters: Any

@@ -14,29 +14,13 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
 from algorithms.kinematics.matrices import inverse
+from algorithms.kinematics.measured import own_row, part_of
 
 Array = NDArray[np.float64]
 
 
-class Measured(NamedTuple):
-    """Plots as the kernels of a fit take them.
-
-    Attributes
-    ----------
-    position : float64 (n, ≥ d)
-    time : float64 (n,)
-    scan : int32 (n,)
-    weight : float64 (n, d, d), inverses of the covariances; (1, d, d) where all are the same
-    """
-
-    position: Array
-    time: Array
-    scan: NDArray[np.int32]
-    weight: Array
-
-
 class Sums(NamedTuple):
-    """Sums over plots, a row for each number of plots, so that the last plot can be taken back.
+    """Sums over plots: with a row for each number of plots the last plot can be taken back.
 
     Attributes
     ----------
@@ -50,9 +34,8 @@ class Sums(NamedTuple):
     squares: Array
 
     @classmethod
-    def of(cls, most: int, dimensions: int) -> Sums:
-        """Return sums of at most so many plots, those of none zero."""
-        rows = most + 1
+    def of(cls, rows: int, dimensions: int) -> Sums:
+        """Return so many rows, all of no plots."""
         shape = (dimensions, dimensions)
         return cls(np.zeros((rows, 3, *shape)), np.zeros((rows, 2, dimensions)), np.zeros(rows))
 
@@ -83,18 +66,19 @@ class Fit(NamedTuple):
 
 
 @kernel
-def add_plot(sums, depth, measured, plot, start, axes):  # type: ignore[no-untyped-def]
-    """Write at `depth` the sums of the plots at the depth before and one more.
+def add_plot(sums, before, after, measured, plot, start, axes):  # type: ignore[no-untyped-def]
+    """Write in the row `after` the sums of the row `before` and one more plot.
 
     Parameters
     ----------
     sums : `Sums`
+    before, after : rows, which may be the same
     measured : `Measured`
     plot, start : the plot, and the first one of its track
     axes : `PLANE` or `SPACE`
     """
     elapsed = measured.time[plot] - measured.time[start]
-    own = plot if len(measured.weight) > 1 else 0
+    own = own_row(measured, plot)
     weight, pushed = sums.weight, sums.pushed
     total = 0.0
     for row in range(len(axes)):
@@ -102,26 +86,27 @@ def add_plot(sums, depth, measured, plot, start, axes):  # type: ignore[no-untyp
         for column in range(len(axes)):
             value = measured.weight[own, row, column]
             push += value * (measured.position[plot, column] - measured.position[start, column])
-            weight[depth, 0, row, column] = weight[depth - 1, 0, row, column] + value
-            weight[depth, 1, row, column] = weight[depth - 1, 1, row, column] + elapsed * value
-            weight[depth, 2, row, column] = weight[depth - 1, 2, row, column] + elapsed * elapsed * value
-        pushed[depth, 0, row] = pushed[depth - 1, 0, row] + push
-        pushed[depth, 1, row] = pushed[depth - 1, 1, row] + elapsed * push
+            weight[after, 0, row, column] = weight[before, 0, row, column] + value
+            weight[after, 1, row, column] = weight[before, 1, row, column] + elapsed * value
+            weight[after, 2, row, column] = weight[before, 2, row, column] + elapsed * elapsed * value
+        pushed[after, 0, row] = pushed[before, 0, row] + push
+        pushed[after, 1, row] = pushed[before, 1, row] + elapsed * push
         total += push * (measured.position[plot, row] - measured.position[start, row])
-    sums.squares[depth] = sums.squares[depth - 1] + total
+    sums.squares[after] = sums.squares[before] + total
 
 
 @kernel
-def fit(sums, depth, made, axes):  # type: ignore[no-untyped-def]
+def fit(sums, held, made, axes):  # type: ignore[no-untyped-def]
     """Write the best constant velocity; return χ², speed and the standard deviation of the speed.
 
     Parameters
     ----------
-    sums : `Sums`; those at `depth` are of at least two plots at different times
+    sums : `Sums`
+    held : row of the sums, of at least two plots at different times
     made : `Fit`, written
     axes : `PLANE` or `SPACE`
     """
-    weight, pushed = sums.weight[depth], sums.pushed[depth]
+    weight, pushed = sums.weight[held], sums.pushed[held]
     state, still, joint, spread, left = made.state, made.still, made.joint, made.spread, made.left
     dimensions = len(axes)
     inverse(weight[0], still, axes)
@@ -145,7 +130,7 @@ def fit(sums, depth, made, axes):  # type: ignore[no-untyped-def]
         left[row] = pushed[0, row]
         for k in range(dimensions):
             left[row] -= weight[1, row, k] * state[1, k]
-    square, speed = sums.squares[depth], 0.0
+    square, speed = sums.squares[held], 0.0
     for row in range(dimensions):
         state[0, row] = 0.0
         for k in range(dimensions):
@@ -166,15 +151,15 @@ def fit(sums, depth, made, axes):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _write_covariance(sums, depth, made, covariance, axes):  # type: ignore[no-untyped-def]
+def _write_covariance(sums, held, made, covariance, axes):  # type: ignore[no-untyped-def]
     """Write the covariance of place and velocity: S0⁻¹ + G·V·Gᵀ, −G·V and V, with G = S0⁻¹·S1.
 
     Parameters
     ----------
-    sums, depth, made : of `fit`
+    sums, held, made : as of `fit`, which has been called
     covariance : float64 (2d, 2d), written
     """
-    weight, still, spread = sums.weight[depth], made.still, made.spread
+    weight, still, spread = sums.weight[held], made.still, made.spread
     dimensions = len(axes)
     lever = made.joint
     for row in range(dimensions):
@@ -198,9 +183,27 @@ def _write_covariance(sums, depth, made, covariance, axes):  # type: ignore[no-u
             covariance[row, column] = total
 
 
+class Fitting(NamedTuple):
+    """Working space of `fit_track`.
+
+    Attributes
+    ----------
+    sums : at least two rows, the first of no plots
+    fit : the last fit
+    """
+
+    sums: Sums
+    fit: Fit
+
+    @classmethod
+    def of(cls, dimensions: int) -> Fitting:
+        """Return space for the fit of a track."""
+        return cls(Sums.of(2, dimensions), Fit.of(dimensions))
+
+
 @kernel
-def fit_track(measured, rows, first, is_noise_known, sums, made, states, track, axes):  # type: ignore[no-untyped-def]
-    """Write the state of one track, at the scan and the time of its first plot.
+def fit_track(measured, rows, space, states, track, axes):  # type: ignore[no-untyped-def]
+    """Write the state of one track, at the scan and the time of its first plot; return how many plots it has.
 
     Where the plots leave the velocity open, since they are of one time, the place is their weighted
     mean.
@@ -208,21 +211,20 @@ def fit_track(measured, rows, first, is_noise_known, sums, made, states, track, 
     Parameters
     ----------
     measured : `Measured`
-    rows : int64, the plots counted from `first`, −1 beyond the last
-    is_noise_known : whether weights are inverse covariances, so that the state has a covariance
-    sums, made : `Sums` of at least as many plots, and `Fit`: working space
+    rows : int64, the plots, −1 beyond the last
+    space : `Fitting`
     states : `TrackStates`, written at `track`
     axes : `PLANE` or `SPACE`
     """
-    dimensions, count = len(axes), 0
+    dimensions, count, sums, made = len(axes), 0, space.sums, space.fit
     while count < len(rows) and rows[count] >= 0:
-        add_plot(sums, count + 1, measured, first + rows[count], first + rows[0], axes)
+        add_plot(sums, min(count, 1), 1, measured, rows[count], rows[0], axes)
         count += 1
     if count == 0:
-        return
-    start = first + rows[0]
+        return count
+    start = rows[0]
     states.scan[track], states.time[track] = measured.scan[start], measured.time[start]
-    fit(sums, count, made, axes)
+    fit(sums, 1, made, axes)
     is_open = False
     for axis in range(dimensions):
         is_open = is_open or not np.isfinite(made.state[0, axis] + made.state[1, axis])
@@ -231,21 +233,19 @@ def fit_track(measured, rows, first, is_noise_known, sums, made, states, track, 
         if is_open:
             place = 0.0
             for k in range(dimensions):
-                place += made.still[axis, k] * sums.pushed[count, 0, k]
+                place += made.still[axis, k] * sums.pushed[1, 0, k]
         states.position[track, axis] = measured.position[start, axis] + place
         states.velocity[track, axis] = np.nan if is_open else made.state[1, axis]
-    if not is_noise_known:
-        return
-    if not is_open:
-        _write_covariance(sums, count, made, states.covariance[track], axes)
-        return
-    for row in range(dimensions):
-        for column in range(dimensions):
-            states.covariance[track, row, column] = made.still[row, column]
+    if is_open:
+        states.covariance[track] = np.nan
+        states.covariance[track, :dimensions, :dimensions] = made.still
+    else:
+        _write_covariance(sums, 1, made, states.covariance[track], axes)
+    return count
 
 
 @kernel
-def fit_tracks(measured, offsets, track_offsets, plots, is_noise_known, sums, made, states, axes):  # type: ignore[no-untyped-def]
+def fit_tracks(measured, offsets, track_offsets, plots, space, states, axes):  # type: ignore[no-untyped-def]
     """Write the states of the tracks of a chunk of trials; see `fit_track`.
 
     Parameters
@@ -254,5 +254,6 @@ def fit_tracks(measured, offsets, track_offsets, plots, is_noise_known, sums, ma
     plots : int64 (m, k), the rows of each track's plots counted from the beginning of its trial
     """
     for trial in range(len(offsets) - 1):
+        own = part_of(measured, offsets[trial], offsets[trial + 1])
         for track in range(track_offsets[trial], track_offsets[trial + 1]):
-            fit_track(measured, plots[track], offsets[trial], is_noise_known, sums, made, states, track, axes)
+            fit_track(own, plots[track], space, states, track, axes)

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.context import Context
-from algorithms.kinematics.least_squares import Fit, Measured, Sums, fit_tracks
-from algorithms.kinematics.matrices import PLANE, SPACE, inverses
+from algorithms.kinematics.least_squares import Fitting, fit_tracks
+from algorithms.kinematics.matrices import axes_of
+from algorithms.kinematics.measured import Measured
 from algorithms.kinematics.noise import covariances
 from algorithms.plots import PlotChunk, Plots
 from algorithms.tracks import TrackChunk, TrackStates
@@ -33,13 +34,13 @@ def with_states(chunk: PlotChunk, tracks: TrackChunk, context: Context, dimensio
         return tracks
     assert tracks.plots is not None
     noise = covariances(chunk, context, dimensions)
-    states, axes = TrackStates.open(len(tracks.theta), dimensions), PLANE if dimensions == 2 else SPACE
-    weight = np.eye(dimensions)[None] if noise is None else inverses(noise, axes)
-    measured = Measured(np.ascontiguousarray(chunk.position), chunk.time, chunk.scan, weight)
+    states = TrackStates.open(len(tracks.theta), dimensions)
     fit_tracks(
-        measured, chunk.offsets, tracks.offsets, tracks.plots, noise is not None,
-        Sums.of(tracks.plots.shape[1], dimensions), Fit.of(dimensions), states, axes,
+        Measured.of(chunk, noise, dimensions), chunk.offsets, tracks.offsets, tracks.plots,
+        Fitting.of(dimensions), states, axes_of(dimensions),
     )  # fmt: skip
+    if noise is None:
+        states.covariance[:] = np.nan
     return replace(tracks, states=states)
 
 

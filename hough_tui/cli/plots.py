@@ -46,6 +46,10 @@ def initiate(
     ] = None,
     most: Annotated[int, typer.Option(min=1, help="Give at most so many tracks, the strongest.")] = 1000,
     as_json: JsonOption = False,
+    csv: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write the tracks with their states as CSV, too; - prints them."),
+    ] = None,
     plot: Annotated[bool, typer.Option("--plot", help="Draw the plots, and the tracks as lines.")] = False,
     accumulator: Annotated[
         Path | None,
@@ -60,11 +64,16 @@ def initiate(
     ] = None,
 ) -> None:
     """Run an initiator on recorded plots and print its tracks."""
-    refuse(as_json and plot, "--json prints one document and nothing else: leave out --plot")
+    is_printed = str(csv) == "-"
+    refuse(
+        as_json and (plot or is_printed),
+        "--json prints one document and nothing else: leave out --plot and --csv -",
+    )
+    refuse(plot and is_printed, "--csv - prints the tracks and nothing else: leave out --plot")
     from algorithms.initiators.registry import initiator
     from hough_tui.cli.sensor_options import known_sensor, window
     from hough_tui.recorded import initiation
-    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.documents import json_text, track_csv
     from scenarios.files.atomic import replace_file
     from scenarios.files.set_files import read_text
     from scenarios.recordings.csv_plots import parse_plots, write_assigned
@@ -91,8 +100,10 @@ def initiate(
     for note in initiation.notes(found):
         tell(note)
     document = initiation.document(found)
-    if as_json:
-        write_document(json_text(document))
+    if csv is not None and not is_printed:
+        replace_file(csv, track_csv(found.tracks))
+    if as_json or is_printed:
+        write_document(json_text(document) if as_json else track_csv(found.tracks))
         return
     from hough_tui.reports.tables import track_table
 

@@ -12,7 +12,6 @@ from algorithms.errors import RequestError
 from algorithms.initiators.registry import initiator
 from algorithms.parameters import validated
 from algorithms.plots import PlotChunk
-from algorithms.space.noise import LEAST_DEVIATION, covariances
 from scenarios.files.set_files import load_set
 from scenarios.simulate import draw
 from scenarios.world import World
@@ -59,20 +58,10 @@ def test_a_speed_beyond_the_default_of_the_other_is_refused_in_words():
         resolved("hough-logic-3d", Context(4, 1.0), second_plane="xz")
 
 
-def test_noise_is_that_of_the_plots_else_that_of_the_context():
+def test_noise_that_is_not_known_is_asked_for():
     flat = chunk_of(np.zeros((2, 3)), [0, 1])
-    context = Context(4, 1.0, sigma=(2.0, 3.0), unit=Unit.KILOMETRE)
-    least = (LEAST_DEVIATION / 1000.0) ** 2
-    expected = np.diag([4.0, 9.0, 9.0]) + least * np.eye(3)
-    np.testing.assert_allclose(covariances(flat, context), [expected, expected], rtol=1e-15)
-    known = replace(context, sigma=(2.0, 3.0, 1.0))
-    np.testing.assert_allclose(covariances(flat, known)[0].diagonal(), [4.0, 9.0, 1.0], rtol=1e-9)
-    own = np.tile(5.0 * np.eye(3), (2, 1, 1))
-    np.testing.assert_allclose(covariances(replace(flat, covariance=own), context), own, rtol=1e-9)
-    exact = covariances(replace(flat, covariance=0.0 * own), context)
-    np.testing.assert_allclose(exact[0], least * np.eye(3), rtol=1e-12)
     with pytest.raises(RequestError, match="the noise is not known: give sigma"):
-        covariances(flat, replace(context, sigma=None))
+        initiator("hough-3d").initiate_chunk(flat, Context(4, 1.0), resolved("hough-3d", Context(4, 1.0)))
 
 
 @pytest.mark.parametrize("name", INITIATORS)

@@ -1,4 +1,4 @@
-"""Pairs, votes in planes and motions in space, each against a loop or a library."""
+"""Votes in planes and lines in space, each against a loop or a library."""
 
 from __future__ import annotations
 
@@ -9,102 +9,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy import stats
 
 from algorithms.initiators.hough_3d import across, directions
-from algorithms.space.motion import chi_square_limits, write_track
-from algorithms.space.pairs import by_first, components, pairs_within_reach
 from algorithms.space.planes import PLANES, confirm, votes_of_pairs
 
 steady = settings(deadline=None, derandomize=True, max_examples=60)
 
 
-def batch(seed, counts=(5, 6, 4, 7), extent=1500.0):
-    random = np.random.default_rng(seed)
-    scan = np.repeat(np.arange(len(counts)), counts).astype(np.int32)
-    position = random.uniform(0.0, extent, (len(scan), 3))
-    spread = random.normal(size=(len(scan), 3, 3)) * 40.0
-    covariance = spread @ spread.transpose(0, 2, 1) + np.eye(3)
-    return position, scan.astype(np.float64), scan, covariance
-
-
-@steady
-@given(st.integers(0, 2**32), st.sampled_from([0.0, 3.0]), st.integers(1, 3))
-def test_pairs_within_reach_are_those_of_a_loop_over_all(seed, allowance, steps):
-    position, time, scan, covariance = batch(seed)
-    pairs, every = pairs_within_reach(position, time, scan, covariance, 50.0, 400.0, allowance, steps)
-    expected, tried = set(), 0
-    for first, second in itertools.product(range(len(scan)), repeat=2):
-        apart = scan[second] - scan[first]
-        if not 0 < apart <= steps:
-            continue
-        tried += 1
-        moved = position[second] - position[first]
-        distance = np.linalg.norm(moved)
-        along = moved / distance
-        noise = allowance * math.sqrt(along @ (covariance[first] + covariance[second]) @ along)
-        if 50.0 * apart - noise <= distance <= 400.0 * apart + noise:
-            expected.add((first, second))
-    assert {tuple(pair) for pair in pairs.tolist()} == expected
-    assert every == tried
-
-
-def test_equal_places_are_within_reach_of_noise_alone():
-    position, time, scan = np.zeros((2, 3)), np.array([0.0, 1.0]), np.array([0, 1], np.int32)
-    covariance = np.tile(np.eye(3), (2, 1, 1))
-    for allowance, found in ((0.0, 0), (3.0, 1)):
-        pairs, every = pairs_within_reach(position, time, scan, covariance, 50.0, 400.0, allowance, 3)
-        assert (len(pairs), every) == (found, 1)
-
-
-def test_the_latest_plot_of_a_scan_decides_how_far_is_searched():
-    # Within a scan times need not rise; those of a recording are as they are.
-    position = np.array([[0.0, 0.0, 0.0], [390.0, 0.0, 0.0], [790.0, 0.0, 0.0]])
-    time, scan = np.array([0.0, 1.0, 2.0]), np.array([0, 1, 1], np.int32)
-    for order in ([0, 1, 2], [0, 2, 1]):
-        pairs, _ = pairs_within_reach(
-            position[order], time[order], scan, np.zeros((3, 3, 3)), 50.0, 400.0, 0.0, 3
-        )
-        assert sorted(pairs.tolist()) == [[0, 1], [0, 2]]
-
-
-def test_plots_of_one_time_are_within_reach_where_noise_may_part_them():
-    # Of two sensors: their scans have two numbers and one time.
-    time, scan = np.zeros(3), np.array([0, 1, 1], np.int32)
-    position = np.array([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [5.0, 0.0, 0.0]])
-    covariance = np.tile(np.eye(3), (3, 1, 1))
-    # The standard deviation of their distance is √2.
-    pairs, every = pairs_within_reach(position, time, scan, covariance, 50.0, 400.0, 3.0, 3)
-    assert (pairs.tolist(), every) == ([[0, 1]], 2)
-    backwards = np.array([1.0, 0.0, 0.0])
-    assert len(pairs_within_reach(position, backwards, scan, covariance, 0.0, 400.0, 3.0, 3)[0]) == 0
-
-
-@steady
-@given(st.integers(0, 2**32))
-def test_components_and_pairs_by_their_first_plot(seed):
-    random = np.random.default_rng(seed)
-    pairs = np.sort(random.integers(0, 12, (9, 2)), axis=1)
-    pairs = pairs[pairs[:, 0] < pairs[:, 1]]
-    kept = random.random(len(pairs)) < 0.7
-    groups = components(12, pairs, kept)
-    graph = {node: {node} for node in range(12)}
-    for first, second in pairs[kept].tolist():
-        joined = graph[first] | graph[second]
-        for node in joined:
-            graph[node] = joined
-    for first, second in itertools.combinations(range(12), 2):
-        assert (groups[first] == groups[second]) == (second in graph[first])
-    ordered, begins = by_first(pairs, kept, 12)
-    assert sorted(map(tuple, ordered.tolist())) == sorted(map(tuple, pairs[kept].tolist()))
-    for plot in range(12):
-        assert (ordered[begins[plot] : begins[plot + 1], 0] == plot).all()
-
-
 @steady
 @given(st.integers(0, 2**32), st.sampled_from([0, 1, 2]))
 def test_votes_are_the_lines_through_both_plots(seed, plane):
-    position, _, _, _ = batch(seed)
+    position = np.random.default_rng(seed).uniform(0.0, 1500.0, (22, 3))
     pairs = np.array([[0, 7], [3, 20], [5, 12]])
     axes, centre = PLANES[plane], np.array([700.0, 800.0, 600.0])
     theta, distance = np.empty(3), np.empty(3)
@@ -202,34 +117,6 @@ def test_two_votes_on_both_sides_of_the_seam_are_one_line():
         confirmed = np.zeros(2, bool)
         confirm(theta, distance, 2, 0.1, 1.0, is_fixed, 2, confirmed, np.empty(2, np.int64), np.empty(2))
         assert confirmed.all() == expected
-
-
-@steady
-@given(st.integers(0, 2**32), st.integers(3, 6))
-def test_the_fit_is_that_of_weighted_least_squares(seed, count):
-    random = np.random.default_rng(seed)
-    time = np.sort(random.uniform(0.0, 10.0, count)) + np.arange(count)
-    position = random.normal(size=(count, 3)) * 1e3
-    spread = random.normal(size=(count, 3, 3)) * 30.0
-    covariance = spread @ spread.transpose(0, 2, 1) + 25.0 * np.eye(3)
-    weight = np.linalg.inv(covariance)
-    plots, state = np.full((1, count), -1, np.int64), np.empty((1, 2, 3))
-    write_track(position, time, weight, np.arange(count), plots, state, 0)
-    design = np.concatenate(
-        [np.concatenate([np.eye(3), elapsed * np.eye(3)], axis=1) for elapsed in time - time[0]]
-    )
-    whitening = np.zeros((3 * count, 3 * count))
-    for k in range(count):
-        whitening[3 * k : 3 * k + 3, 3 * k : 3 * k + 3] = np.linalg.cholesky(weight[k]).T
-    expected = np.linalg.lstsq(whitening @ design, whitening @ position.ravel(), rcond=None)[0]
-    np.testing.assert_allclose(state[0].ravel(), expected, rtol=1e-6, atol=1e-5)
-
-
-def test_limits_are_those_of_chi_squared():
-    limits = chi_square_limits(0.99, 5)
-    assert np.isinf(limits[:, :3]).all()
-    np.testing.assert_allclose(limits[0, 3:], stats.chi2([3, 6, 9]).ppf(0.99))
-    np.testing.assert_allclose(limits[1, 3:], stats.chi2([3, 6, 9]).isf(1e-4))
 
 
 @pytest.mark.parametrize("tessellation", [1, 2, 3])

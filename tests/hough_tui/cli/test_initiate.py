@@ -97,6 +97,26 @@ def test_the_document_has_the_form_that_scripts_rely_on(document, simulated):
             assert np.linalg.eigvalsh(covariance).min() > 0
 
 
+def test_csv_gives_the_states_of_the_document(cli, document, simulated, tmp_path):
+    tracks = document(simulated, *LIKE)["tracks"]
+    path = tmp_path / "tracks.csv"
+    assert cli("initiate", simulated, *LIKE, "--csv", path)[0] == 0
+    status, out, _ = cli("initiate", simulated, *LIKE, "--csv", "-")
+    assert (status, out) == (0, path.read_text())
+    rows = rows_of(out)
+    assert len(rows) == len(tracks) > 0
+    names = ("x", "y", "vx", "vy")
+    for row, track in zip(rows, tracks, strict=True):
+        assert [float(row[f"position.{axis}"]) for axis in range(2)] == track["position"]
+        assert [float(row[f"velocity.{axis}"]) for axis in range(2)] == track["velocity"]
+        assert (float(row["time"]), int(row["first_scan"])) == (track["time"], track["first_scan"])
+        for i, j in ((0, 0), (0, 2), (1, 3), (3, 3)):
+            assert float(row[f"covariance.{names[i]}.{names[j]}"]) == track["covariance"][i][j]
+    status, out, err = cli("initiate", simulated, "--csv", "-", "--json")
+    assert (status, out) == (2, "")
+    assert "--json prints one document and nothing else" in err
+
+
 @pytest.mark.parametrize("order", ["as simulated", "shuffled"])
 def test_both_targets_are_among_the_tracks(document, simulated, order):
     if order == "shuffled":

@@ -1,4 +1,4 @@
-"""The search for motions in space, and the choice among them, against plain recursion and counting."""
+"""The search for motions, and the choice among them, against plain recursion and counting."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms.space.motion import choose_disjoint, search_motions, write_track
+from algorithms.kinematics.gates import SpeedGate
+from algorithms.kinematics.matrices import SPACE
+from algorithms.kinematics.measured import Measured
+from algorithms.kinematics.track_search import Candidates, TrackRule, choose_disjoint, search_motions
 
 steady = settings(deadline=None, derandomize=True, max_examples=40)
 
@@ -86,15 +89,14 @@ def test_motions_are_those_of_plain_recursion(seed, allowance, least, in_planes)
     begins = np.searchsorted(pairs[:, 0], np.arange(16))
     follows = [pairs[begins[plot] : begins[plot + 1], 1].tolist() for plot in range(15)]
     planes = PLANES if in_planes else PLANES[:0]
-    found, squares = np.empty((500, 5), np.int64), np.empty(500)
-    count = search_motions(
-        position, time, np.linalg.inv(covariance), pairs, usable, begins, least, LIMITS, SLOWEST, FASTEST,
-        allowance, planes, found, squares,
-    )  # fmt: skip
+    made = Candidates.of(5, 3)
+    rule = TrackRule(SpeedGate(SLOWEST, FASTEST, allowance), least, LIMITS, planes)
+    measured = Measured(position, time, scans.astype(np.int32), covariance, np.linalg.inv(covariance))
+    count = search_motions(measured, pairs, begins, usable, rule, made, SPACE)
     expected = motions_by_recursion(position, time, covariance, follows, usable, least, allowance, planes)
     tracks = {
         tuple(row[row >= 0].tolist()): square
-        for row, square in zip(found[:count], squares[:count], strict=True)
+        for row, square in zip(made.plots[:count], made.squares[:count], strict=True)
     }
     assert tracks.keys() == expected.keys()
     for track, square in expected.items():
@@ -127,17 +129,11 @@ def test_plots_of_one_time_wait_for_a_later_one():
     # Three sensors at one time: no velocity fits their plots alone.
     time = np.array([0.0, 0.0, 0.0, 1.0])
     position = np.array([[0.0, 0, 0], [1.0, 0, 0], [-1.0, 0, 0], [100.0, 0, 0]])
-    weight = np.tile(np.eye(3), (4, 1, 1))
     pairs, begins = np.array([[0, 1], [1, 2], [2, 3]]), np.array([0, 1, 2, 3, 3])
-    found, squares = np.empty((10, 4), np.int64), np.empty(10)
     limits = np.full((2, 5), np.inf)
     limits[:, 4] = 2.5
-    count = search_motions(
-        position, time, weight, pairs, np.ones(4, bool), begins, 4, limits, 50.0, 400.0, 0.0, PLANES[:0],
-        found, squares,
-    )  # fmt: skip
-    assert found[:count].tolist() == [[0, 1, 2, 3]]
-    assert squares[0] == pytest.approx(2.0)
-    plots, state = np.full((1, 4), -1, np.int64), np.empty((1, 2, 3))
-    write_track(position, time, weight, np.arange(4), plots, state, 0)
-    np.testing.assert_allclose(state[0], [[0.0, 0, 0], [100.0, 0, 0]], atol=1e-9)
+    rule, made = TrackRule(SpeedGate(50.0, 400.0), 4, limits, PLANES[:0]), Candidates.of(4, 3)
+    measured = Measured(position, time, np.array([0, 0, 0, 1], np.int32), np.eye(3)[None], np.eye(3)[None])
+    count = search_motions(measured, pairs, begins, np.ones(4, bool), rule, made, SPACE)
+    assert made.plots[:count].tolist() == [[0, 1, 2, 3]]
+    assert made.squares[0] == pytest.approx(2.0)

@@ -5,87 +5,68 @@ from __future__ import annotations
 import numpy as np
 
 from algorithms.compiled import kernel
+from algorithms.kinematics.gates import can_fly
+from algorithms.kinematics.measured import own_row
+from algorithms.kinematics.strips import by_x, strip
 
 
 @kernel
-def by_x(position, scan):  # type: ignore[no-untyped-def]
-    """Return the plots of one batch sorted by scan, then x, and where each scan begins among them.
+def is_within_reach(measured, gate, first, second, axes):  # type: ignore[no-untyped-def]
+    """Return whether two plots are as far apart as a target can go between them, the noise allowed for.
 
-    Returns
-    -------
-    order : int64 (n,)
-    begins : int64 (scans with plots + 1,)
+    Two plots of one time, of different sensors, are within reach where noise alone may part them.
+
+    Parameters
+    ----------
+    measured : `Measured`
+    gate : `SpeedGate`
+    axes : `PLANE` or `SPACE`
     """
-    count = len(scan)
-    order = np.empty(count, np.int64)
-    begins = np.empty(count + 1, np.int64)
-    scans, first = 0, 0
-    while first < count:
-        end = first
-        while end < count and scan[end] == scan[first]:
-            end += 1
-        order[first:end] = first + np.argsort(position[first:end, 0])
-        begins[scans] = first
-        scans += 1
-        first = end
-    begins[scans] = count
-    return order, begins[: scans + 1]
+    elapsed = measured.time[second] - measured.time[first]
+    if elapsed < 0.0:
+        return False
+    square, variance = 0.0, 0.0
+    early = measured.covariance[own_row(measured, first)]
+    late = measured.covariance[own_row(measured, second)]
+    for row in range(len(axes)):
+        step = measured.position[second, row] - measured.position[first, row]
+        square += step * step
+        for column in range(len(axes)):
+            other = measured.position[second, column] - measured.position[first, column]
+            variance += step * (early[row, column] + late[row, column]) * other
+    if gate.allowance == 0.0:
+        return can_fly(gate, np.sqrt(square), elapsed, 0.0)
+    # Two plots at one place have no direction along which they could have a distance: any will do.
+    deviation = np.sqrt(variance / square) if square > 0.0 else np.inf
+    return can_fly(gate, np.sqrt(square), elapsed, deviation)
 
 
 @kernel
-def _variance_along(covariance, first, second, x, y, z):  # type: ignore[no-untyped-def]
-    """Return the variance of the distance of two plots along their displacement, times its square."""
-    total = 0.0
-    for plot in (first, second):
-        total += x * (covariance[plot, 0, 0] * x + 2.0 * covariance[plot, 0, 1] * y)
-        total += y * (covariance[plot, 1, 1] * y + 2.0 * covariance[plot, 1, 2] * z)
-        total += z * (covariance[plot, 2, 2] * z + 2.0 * covariance[plot, 0, 2] * x)
+def _variance(measured, plot, axes):  # type: ignore[no-untyped-def]
+    """Return the sum of the variances of a plot on all axes: none along a direction is greater."""
+    own, total = own_row(measured, plot), 0.0
+    for axis in range(len(axes)):
+        total += measured.covariance[own, axis, axis]
     return total
 
 
 @kernel
-def is_within_reach(  # type: ignore[no-untyped-def]
-    position, time, covariance, first, second, slowest, fastest, allowance
-):
-    """Return whether two plots are as far apart as a target can go between them, the noise allowed for.
-
-    Two plots of one time, of different sensors, are within reach where noise alone may part them.
-    """
-    x = position[second, 0] - position[first, 0]
-    y = position[second, 1] - position[first, 1]
-    z = position[second, 2] - position[first, 2]
-    elapsed = time[second] - time[first]
-    if elapsed < 0.0:
-        return False
-    square = x * x + y * y + z * z
-    noise = 0.0
-    if allowance > 0.0 and square > 0.0:
-        noise = allowance * np.sqrt(_variance_along(covariance, first, second, x, y, z) / square)
-    elif allowance > 0.0:
-        noise = np.inf
-    distance = np.sqrt(square)
-    return slowest * elapsed - noise <= distance <= fastest * elapsed + noise
-
-
-@kernel
-def pairs_within_reach(  # type: ignore[no-untyped-def]
-    position, time, scan, covariance, slowest, fastest, allowance, steps
-):
+def pairs_within_reach(measured, gate, steps, axes):  # type: ignore[no-untyped-def]
     """Return the pairs of plots up to `steps` scans apart that are within reach, and how many were tried.
 
     Parameters
     ----------
-    position : float64 (n, 3)
-    time, scan, covariance : of the same plots, sorted by scan
-    slowest, fastest : speeds
-    allowance : standard deviations of the noise along the displacement by which a pair may miss
+    measured : `Measured`, one batch sorted by scan
+    gate : `SpeedGate`
     steps : most scans between the plots of a pair
+    axes : `PLANE` or `SPACE`
 
     Returns
     -------
     pairs : int64 (pairs, 2), the earlier plot first
     every : number of pairs before the gate
     """
+    position, time, scan = measured.position, measured.time, measured.scan
     order, begins = by_x(position, scan)
     pairs = np.empty((4 * len(scan) + 16, 2), np.int64)
     count, every = 0, 0
@@ -99,19 +80,14 @@ def pairs_within_reach(  # type: ignore[no-untyped-def]
             # No two plots with a greater distance in x than this can be within reach.
             widest, latest = 0.0, -np.inf
             for plot in sought:
-                widest = max(widest, covariance[plot, 0, 0] + covariance[plot, 1, 1] + covariance[plot, 2, 2])
+                widest = max(widest, _variance(measured, plot, axes))
                 latest = max(latest, time[plot])
             for first in order[begins[earlier] : begins[earlier + 1]]:
-                own = covariance[first, 0, 0] + covariance[first, 1, 1] + covariance[first, 2, 2]
-                reach = fastest * (latest - time[first]) + allowance * np.sqrt(own + widest)
-                begin = np.searchsorted(places, position[first, 0] - reach)
-                for k in range(begin, len(sought)):
-                    if places[k] > position[first, 0] + reach:
-                        break
-                    second = sought[k]
-                    if is_within_reach(
-                        position, time, covariance, first, second, slowest, fastest, allowance
-                    ):
+                noise = gate.allowance * np.sqrt(_variance(measured, first, axes) + widest)
+                reach = gate.fastest * (latest - time[first]) + noise
+                begin, end = strip(places, position[first, 0], reach)
+                for second in sought[begin:end]:
+                    if is_within_reach(measured, gate, first, second, axes):
                         if count == len(pairs):
                             larger = np.empty((2 * count, 2), np.int64)
                             larger[:count] = pairs
