@@ -22,7 +22,17 @@ class Kernel:
     function : in the part of Python that numba compiles
     """
 
+    function: Callable[..., Any]
+
     def __init__(self, function: Callable[..., Any]) -> None:
+        # A function that is made around different kernels is as many functions: numba names machine
+        # code after the function, and code of one name that two processes kept would be taken for one.
+        around = [inner for inner in _closure(function) if isinstance(inner, Kernel)]
+        if around:
+            names = ", ".join(
+                f"{inner.function.__module__}.{inner.function.__qualname__}" for inner in around
+            )
+            function.__qualname__ += f"[{names}]"
         self.function = function
         update_wrapper(self, function)
 
@@ -30,8 +40,13 @@ class Kernel:
         """Return what the function returns."""
         return self.compiled(*arguments)
 
+    @property
+    def name(self) -> str:
+        """Name of the function with that of its module."""
+        return f"{self.function.__module__}.{self.function.__qualname__}"
+
     def __reduce__(self) -> tuple[Callable[..., Any], tuple[str, str]]:
-        """Return where the kernel is: numba knows a kernel made by a function by what it calls."""
+        """Return where the kernel is: code is kept under the kernels that its function is made around."""
         return _named, (self.function.__module__, self.function.__qualname__)
 
     @cached_property
@@ -49,6 +64,10 @@ class Kernel:
         if folder is not None and dispatcher is not self.function:
             dispatcher._cache = OverloadCache(folder, self.function)
         return dispatcher
+
+
+def _closure(function: Callable[..., Any]) -> list[Any]:
+    return [cell.cell_contents for cell in function.__closure__ or ()]
 
 
 def _named(module: str, name: str) -> Any:

@@ -39,7 +39,7 @@ def whole_trial() -> None:
     def voting() -> None:
         for first, end in zip(drawn.chunk.offsets[:-1], drawn.chunk.offsets[1:], strict=True):
             x, y = (column[first:end] for column in columns)
-            vote(x, y, arrays.cosine, arrays.sine, grid.rho_min, grid.rho_step, accumulator, working)
+            vote(x, y, arrays, accumulator, working)
 
     def trial() -> None:
         found = draw(world, 7, 0, TRIALS)

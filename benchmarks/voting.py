@@ -38,7 +38,7 @@ def compare(points: int) -> None:
     arrays = GridArrays.of(grid)
     accumulator, working = arrays.accumulator(), np.empty(points, np.int32)
     xs, ys = x.astype(np.float64), y.astype(np.float64)
-    votes = partial(vote, xs, ys, arrays.cosine, arrays.sine, grid.rho_min, 1.0, accumulator, working)
+    votes = partial(vote, xs, ys, arrays, accumulator, working)
 
     mean, squares, places = np.zeros(accumulator.shape), np.zeros(accumulator.shape), np.empty(points)
     inverse = reciprocals(points)
@@ -46,10 +46,7 @@ def compare(points: int) -> None:
     def with_moments() -> None:
         # Counts grow from call to call, and the table of their reciprocals does not.
         accumulator[:] = 0
-        vote_with_moments(
-            xs, ys, arrays.cosine, arrays.sine, grid.rho_min, 1.0,
-            accumulator, mean, squares, inverse, places,
-        )  # fmt: skip
+        vote_with_moments(xs, ys, arrays, accumulator, mean, squares, inverse, places)
 
     # The threshold leaves OpenCV no peak to sort, so that its time is that of its votes.
     cloud = np.stack([x, y], axis=1).astype(np.float32)[:, None, :]

@@ -11,7 +11,7 @@ from algorithms.context import Box, Context, Unit
 from algorithms.errors import RequestError
 from algorithms.hough.grid import Grid, GridParameters
 from algorithms.hough.lines import line_through, normal_form
-from algorithms.hough.search import Extraction, PeakSearch
+from algorithms.hough.peaks.extraction import Extraction
 from algorithms.hough.voting import Accumulator, accumulate
 from algorithms.initiators.accumulating import AccumulatingInitiator, AccumulatingParameters
 from algorithms.initiators.base import ChunkInitiator, Initiator
@@ -49,7 +49,6 @@ __all__ = [
     "NotNegative",
     "Number",
     "Parameters",
-    "PeakSearch",
     "PlotChunk",
     "Plots",
     "Positive",

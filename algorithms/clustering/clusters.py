@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +19,7 @@ NONE = -1
 """The cluster of a point that is in none."""
 
 
-@dataclass(frozen=True, slots=True)
-class Sets:
+class Sets(NamedTuple):
     """Sets of points, each wholly in one scan, in the order of the scans.
 
     Attributes
@@ -35,8 +35,7 @@ class Sets:
     scan: NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True)
-class Conclusion:
+class Conclusion(NamedTuple):
     """What is made of a set: which of its points are kept, and which plot they give.
 
     Attributes
@@ -141,24 +140,22 @@ def _plot(along, doppler, amplitude, members, kept, count):  # type: ignore[no-u
 
 
 @kernel
-def _conclude(  # type: ignore[no-untyped-def]
-    along, doppler, amplitude, order, first, end,
-    squared_radius, least_points, is_mean, range_added, doppler_added,
-):  # fmt: skip
-    room = len(first)
+def _conclude(along, doppler, amplitude, sets, conclusion):  # type: ignore[no-untyped-def]
+    """Return of each cluster its set, plot, strongest point and shape; of each point cluster and use."""
+    room, squared_radius = len(sets.first), conclusion.radius**2 * SLACK
     which, strongest = np.empty(room, np.int64), np.empty(room, np.int64)
     plots, shapes = np.empty((room, 3)), np.empty((room, 5))
     label, kept = np.full(len(along), -1, np.int64), np.zeros(len(along), np.bool_)
     cluster = 0
     for index in range(room):
-        members = order[first[index] : end[index]]
-        if len(members) < least_points:
+        members = sets.order[sets.first[index] : sets.end[index]]
+        if len(members) < conclusion.least_points:
             continue
         mean_r, mean_d, a, b, c = moments(along, doppler, members)
-        shape = (mean_r, mean_d, a + range_added, b + doppler_added, c)
+        shape = (mean_r, mean_d, a + conclusion.range_added, b + conclusion.doppler_added, c)
         count = _keep(along, doppler, members, shape, squared_radius, kept)
         point, r, d, level = _plot(along, doppler, amplitude, members, kept, count)
-        if not is_mean:
+        if not conclusion.is_mean:
             r, d, level = along[point], doppler[point], amplitude[point]
         for member in members:
             label[member] = cluster
@@ -182,9 +179,7 @@ def conclude(points: Points, sets: Sets, conclusion: Conclusion) -> Clusters:
     the first is the strongest.
     """
     which, plots, strongest, shapes, label, kept = _conclude(
-        points.range, points.doppler, points.amplitude, sets.order, sets.first, sets.end,
-        conclusion.radius**2 * SLACK, conclusion.least_points, conclusion.is_mean,
-        conclusion.range_added, conclusion.doppler_added,
-    )  # fmt: skip
+        points.range, points.doppler, points.amplitude, sets, conclusion
+    )
     along, doppler, amplitude = (np.ascontiguousarray(plots[:, column]) for column in range(3))
     return Clusters(points, sets.scan[which], along, doppler, amplitude, strongest, shapes, label, kept)

@@ -13,15 +13,13 @@ from algorithms.hough.voting import FIRST, GridArrays
 
 
 @kernel
-def vote_with_moments(  # type: ignore[no-untyped-def]
-    x, y, cosine, sine, rho_min, rho_step, accumulator, mean, squares, inverse, places
-):
+def vote_with_moments(x, y, grid, accumulator, mean, squares, inverse, places):  # type: ignore[no-untyped-def]
     """Add one vote a row for each plot, and bring mean and squares of each cell up to date.
 
     Parameters
     ----------
     x, y : float64 (n,), measured from the grid's origin
-    cosine, sine : float64 (rows,)
+    grid : `GridArrays`
     accumulator : uint32 (rows, ρ columns + 2), changed in place as by `vote`
     mean : float64 of the same shape, changed in place: of the places that voted, in columns
         from the left edge of the first sentinel column; 0 before the first vote
@@ -41,9 +39,9 @@ def vote_with_moments(  # type: ignore[no-untyped-def]
     B. P. Welford, Technometrics 4, 1962.
     """
     top = float(accumulator.shape[1] - 1)
-    for row in range(len(cosine)):
-        along_x, along_y = cosine[row] / rho_step, sine[row] / rho_step
-        first = FIRST - rho_min / rho_step
+    for row in range(len(grid.cosine)):
+        along_x, along_y = grid.cosine[row] / grid.rho_step, grid.sine[row] / grid.rho_step
+        first = FIRST - grid.rho_min / grid.rho_step
         for plot in range(len(x)):
             place = x[plot] * along_x + y[plot] * along_y + first
             # As in `vote`: clamped while it is a float, and no number counts as outside.
@@ -100,10 +98,7 @@ def moments(position: NDArray[np.float64], grid: Grid) -> Moments:
     votes = arrays.accumulator()
     mean, squares = np.zeros(votes.shape), np.zeros(votes.shape)
     x, y = (np.ascontiguousarray(position[:, axis] - grid.origin[axis]) for axis in (0, 1))
-    vote_with_moments(
-        x, y, arrays.cosine, arrays.sine, grid.rho_min, grid.rho_step,
-        votes, mean, squares, reciprocals(len(x)), np.empty(len(x)),
-    )  # fmt: skip
+    vote_with_moments(x, y, arrays, votes, mean, squares, reciprocals(len(x)), np.empty(len(x)))
     inside = np.s_[:, FIRST:-1]
     counts = np.ascontiguousarray(votes[inside])
     rho = grid.rho_min + (mean[inside] - FIRST) * grid.rho_step

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +16,7 @@ FIRST = 1
 the votes below the grid, the one after the last takes those above."""
 
 
-@dataclass(frozen=True, slots=True)
-class GridArrays:
+class GridArrays(NamedTuple):
     """A grid as the kernels take it.
 
     Attributes
@@ -46,13 +46,13 @@ class GridArrays:
 
 
 @kernel
-def vote(x, y, cosine, sine, rho_min, rho_step, accumulator, columns):  # type: ignore[no-untyped-def]
+def vote(x, y, grid, accumulator, columns):  # type: ignore[no-untyped-def]
     """Add one vote a row for each plot.
 
     Parameters
     ----------
     x, y : float64 (n,), measured from the grid's origin
-    cosine, sine : float64 (rows,)
+    grid : `GridArrays`
     accumulator : uint32 (rows, ρ columns + 2), changed in place
     columns : int32 (≥ n,), working space
 
@@ -63,9 +63,9 @@ def vote(x, y, cosine, sine, rho_min, rho_step, accumulator, columns):  # type: 
     that neither loop has a branch.
     """
     top = float(accumulator.shape[1] - 1)
-    for row in range(len(cosine)):
-        along_x, along_y = cosine[row] / rho_step, sine[row] / rho_step
-        first = FIRST - rho_min / rho_step
+    for row in range(len(grid.cosine)):
+        along_x, along_y = grid.cosine[row] / grid.rho_step, grid.sine[row] / grid.rho_step
+        first = FIRST - grid.rho_min / grid.rho_step
         for plot in range(len(x)):
             column = x[plot] * along_x + y[plot] * along_y + first
             # Clamped while it is a float: beyond the integers the conversion has no defined result.
@@ -132,5 +132,5 @@ def accumulate(position: NDArray[np.float64], grid: Grid) -> Accumulator:
     arrays = GridArrays.of(grid)
     padded = arrays.accumulator()
     x, y = (np.ascontiguousarray(position[:, axis] - grid.origin[axis]) for axis in (0, 1))
-    vote(x, y, arrays.cosine, arrays.sine, grid.rho_min, grid.rho_step, padded, np.empty(len(x), np.int32))
+    vote(x, y, arrays, padded, np.empty(len(x), np.int32))
     return Accumulator(grid, np.ascontiguousarray(padded[:, FIRST:-1]), int(votes_outside(padded)))

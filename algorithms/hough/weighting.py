@@ -108,13 +108,13 @@ class WeightingSpace(NamedTuple):
 
 
 @kernel
-def weigh(x, y, cosine, sine, rho_min, rho_step, space):  # type: ignore[no-untyped-def]
+def weigh(x, y, grid, space):  # type: ignore[no-untyped-def]
     """Fill votes, deviations and weighted votes of a `WeightingSpace` with those of plots.
 
     Parameters
     ----------
     x, y : float64 (n,), measured from the grid's origin
-    cosine, sine : float64 (rows,)
+    grid : `GridArrays`
     """
     votes, weighted, deviation = space.votes, space.weighted, space.deviation
     by_theta, by_rho = space.by_theta, space.by_rho
@@ -123,13 +123,11 @@ def weigh(x, y, cosine, sine, rho_min, rho_step, space):  # type: ignore[no-unty
     votes[:] = 0
     mean[:] = 0.0
     squares[:] = 0.0
-    vote_with_moments(
-        x, y, cosine, sine, rho_min, rho_step, votes, mean, squares, space.inverse, space.places
-    )
+    vote_with_moments(x, y, grid, votes, mean, squares, space.inverse, space.places)
     deviations(votes, squares, space.least_votes, by_theta, by_rho)
     least = by_theta.min()
     weighted[:] = 0.0
-    for row in range(len(cosine)):
+    for row in range(len(votes)):
         if by_theta[row] == np.inf:
             continue
         for column in range(FIRST, votes.shape[1] - 1):
@@ -170,7 +168,7 @@ def accumulate_weighted(position: NDArray[np.float64], grid: Grid, weighting: We
     arrays = GridArrays.of(grid)
     x, y = (np.ascontiguousarray(position[:, axis] - grid.origin[axis]) for axis in (0, 1))
     space = WeightingSpace.of(weighting, arrays.accumulator(), len(x))
-    weigh(x, y, arrays.cosine, arrays.sine, grid.rho_min, grid.rho_step, space)
+    weigh(x, y, arrays, space)
     inside = np.s_[:, FIRST:-1]
     deviation = space.deviation[inside]
     return Accumulator(

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 from algorithms.association import associate
 from algorithms.context import Context
 from algorithms.hough.grid import GridParameters
-from algorithms.hough.search import Extraction, PeakSearch, search
+from algorithms.hough.peaks.extraction import Extraction
+from algorithms.hough.peaks.registry import EXTRACTIONS
+from algorithms.hough.search import search
 from algorithms.hough.voting import Accumulator, accumulate
 from algorithms.hough.weighting import Weighting, accumulate_weighted
-from algorithms.hough.windows import suppression
 from algorithms.initiators.base import ChunkInitiator
 from algorithms.parameters import Auto, Count, Dimension, Fraction, Parameters, Whole, parameter
 from algorithms.plots import PlotChunk, Plots
@@ -24,15 +25,16 @@ STRIP = 1.5
 """Half the width of the strip in which a line's plots are sought, in ρ columns: the cell and
 its two neighbours, since a line between two rows spreads beyond one cell."""
 
-Peaks = Literal["threshold", "thesis", "best-first", "vote-removal", "sequential"]
+if TYPE_CHECKING:
+    Peaks = str
+else:
+    Peaks = Literal[tuple(EXTRACTIONS)]
 
-EXTRACTIONS = {
-    "threshold": Extraction.THRESHOLD,
-    "thesis": Extraction.THESIS,
-    "best-first": Extraction.BEST_FIRST,
-    "vote-removal": Extraction.VOTE_REMOVAL,
-    "sequential": Extraction.SUCCESSIVE,
-}
+
+def _windows(axis: int) -> str:
+    """Return the default half windows of the extractions in words."""
+    every = EXTRACTIONS.values()
+    return ", ".join(f"{each.windows[axis]} for {each.name}" for each in every if each.windows is not None)
 
 
 class AccumulatingParameters(Parameters):
@@ -51,9 +53,8 @@ class AccumulatingParameters(Parameters):
     )
     peaks: Peaks = parameter(
         "threshold",
-        help="which cells with enough votes are tracks: every one; one a group of neighbours (thesis); from "
-        "the greatest down, each suppressing its own peak (best-first) or its plots' votes (vote-removal); "
-        "the greatest, again and again, a window around each cleared (sequential)",
+        help="which cells with enough votes are tracks: "
+        + "; ".join(f"{extraction.summary} ({name})" for name, extraction in EXTRACTIONS.items()),
     )
     maxima: Count | None = parameter(
         None, dimension=Dimension.COUNT, help="how many maxima S are taken at most, the greatest"
@@ -62,14 +63,13 @@ class AccumulatingParameters(Parameters):
         "auto",
         dimension=Dimension.COUNT,
         help="rows on each side of a maximum that belong to it; threshold has no window",
-        auto="4 for thesis, 5 for sequential, 0 for vote-removal, twice the width of a peak for best-first",
+        auto=_windows(0),
     )
     suppress_rho: Whole | Auto = parameter(
         "auto",
         dimension=Dimension.COUNT,
         help="columns on each side of a maximum that belong to it; threshold has no window",
-        auto="2 for thesis, 5 for sequential, 1 for vote-removal, half the height of a peak and 1 for "
-        "best-first",
+        auto=_windows(1),
     )
     ties: Literal["last", "first"] = parameter(
         "last", help="which of equal maxima is taken, in θ-major order; the source takes the last"
@@ -79,13 +79,13 @@ class AccumulatingParameters(Parameters):
         """Return these parameters with quantisation, least votes and windows worked out.
 
         The threshold is ⌈fraction·n·Pd⌉, at least 1; the ceiling forgives rounding errors. For
-        the windows see `algorithms.hough.windows`.
+        the windows see the extractions.
         """
         votes = self.votes
         if votes is None:
             votes = max(1, math.ceil(self.fraction * context.expected_votes - 1e-9))
         grid = self.grid.resolved(context)
-        rows, columns = suppression(EXTRACTIONS[self.peaks], grid.grid(context), context, votes)
+        rows, columns = EXTRACTIONS[self.peaks].default_window(grid.grid(context), context, votes)
         return self.model_copy(
             update={
                 "grid": grid,
@@ -99,16 +99,21 @@ class AccumulatingParameters(Parameters):
 class AccumulatingInitiator(ChunkInitiator):
     """An initiator that takes peaks of an accumulator: it says what of its declared choices differs."""
 
-    def peaks(self, parameters: Any) -> PeakSearch:
-        """Return what makes a cell a track."""
-        return PeakSearch(
-            EXTRACTIONS[parameters.peaks],
-            parameters.votes,
-            parameters.maxima,
-            parameters.suppress_theta,
-            parameters.suppress_rho,
-            last=parameters.ties == "last",
-        )
+    def extraction(self, parameters: Any) -> Extraction:
+        """Return which cells are tracks."""
+        choices = {
+            "votes": parameters.votes,
+            "maxima": parameters.maxima,
+            "rows": parameters.suppress_theta,
+            "columns": parameters.suppress_rho,
+            "last": parameters.ties == "last",
+            "wrap": self.goes_on(parameters),
+        }
+        return EXTRACTIONS[parameters.peaks].of(choices)
+
+    def goes_on(self, parameters: Any) -> bool:
+        """Return whether a window around a cell goes on across θ = 0 and π."""
+        return True
 
     def weighting(self, parameters: Any) -> Weighting | None:
         """Return how votes are weighted; None where they count as they are."""
@@ -117,7 +122,7 @@ class AccumulatingInitiator(ChunkInitiator):
     def initiate_chunk(self, chunk: PlotChunk, context: Context, parameters: Any) -> TrackChunk:
         """Return the tracks of each trial: the lines at the centres of the chosen cells."""
         grid = parameters.grid.grid(context)
-        return search(chunk, grid, self.peaks(parameters), self.weighting(parameters))
+        return search(chunk, grid, self.extraction(parameters), self.weighting(parameters))
 
     def associate_chunk(
         self, chunk: PlotChunk, tracks: TrackChunk, context: Context, parameters: Any

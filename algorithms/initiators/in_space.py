@@ -135,7 +135,7 @@ class SpaceInitiator(ChunkInitiator):
     ) -> NDArray[np.int64] | None:
         """Return the scan of the plot with which each track has as many as it needs to be declared."""
         number = self.confirming_plots(parameters)
-        if number is None:
+        if number is None or not len(plots):
             return None
         first = np.repeat(chunk.offsets[:-1], np.diff(ends))
         scans: NDArray[np.int64] = chunk.scan[first + plots[:, number - 1]].astype(np.int64)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Literal
 
-from algorithms.hough.search import PeakSearch
 from algorithms.initiators.accumulating import AccumulatingInitiator, AccumulatingParameters, Peaks
 from algorithms.parameters import Count, Dimension, Fraction, parameter, with_default
 
@@ -41,9 +39,9 @@ class Sequential(AccumulatingInitiator):
     source = "course report 2018, section 2.3.3"
     parameters = SequentialParameters
 
-    def peaks(self, parameters: SequentialParameters) -> PeakSearch:
-        """Return the search for successive maxima."""
-        return replace(super().peaks(parameters), wrap=parameters.mode == "sound")
+    def goes_on(self, parameters: SequentialParameters) -> bool:
+        """Return whether a window around a cell goes on across θ = 0 and π: not in the document's mode."""
+        return parameters.mode == "sound"
 
 
 INITIATOR = Sequential()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +21,36 @@ with 40 scans), the fine one to .0001; with R = 16σ the fine one is exact to .0
 """
 
 
+class Passage(NamedTuple):
+    """A target's way through a batch.
+
+    Attributes
+    ----------
+    sigma : standard deviation of the noise across the line, above 0
+    scans, extent : its scans n, evenly spaced over the length L of the line
+    probability : Pd
+    """
+
+    sigma: float
+    scans: int
+    extent: float
+    probability: float
+
+
+class Nodes(NamedTuple):
+    """Nodes and weights of the means over the angle and over the place in the cell, float64 each."""
+
+    angles: Array
+    angle_weights: Array
+    places: Array
+    place_weights: Array
+
+
 @kernel
-def _home_votes(  # type: ignore[no-untyped-def]
-    theta_step, rho_step, sigma, scans, extent, probability, angles, angle_weights, places, place_weights,
-    votes,
-):  # fmt: skip
-    scale = 1.0 / (math.sqrt(2.0) * sigma)
+def _home_votes(theta_step, rho_step, passage, nodes, votes):  # type: ignore[no-untyped-def]
+    scale = 1.0 / (math.sqrt(2.0) * passage.sigma)
+    scans, extent, probability = passage.scans, passage.extent, passage.probability
+    angles, places = nodes.angles, nodes.places
     distribution = np.empty(scans + 1, np.float64)
     for i in range(len(theta_step)):
         for j in range(len(rho_step)):
@@ -46,7 +71,7 @@ def _home_votes(  # type: ignore[no-untyped-def]
                         for k in range(scan, 0, -1):
                             distribution[k] = distribution[k] * (1.0 - hit) + distribution[k - 1] * hit
                         distribution[0] *= 1.0 - hit
-                    weight = angle_weights[a] * place_weights[b]
+                    weight = nodes.angle_weights[a] * nodes.place_weights[b]
                     for k in range(scans + 1):
                         votes[i, j, k] += weight * distribution[k]
 
@@ -81,15 +106,12 @@ def home_votes(
     offset k·sin δ; the votes add up scan by scan. (A binomial number with the mean share of the votes, for
     plots anywhere along the line, scatters more: it is off where R is large beside σ and Pd is near 1.)
     """
-    angles, angle_weights = _half_line(nodes[0])
-    places, place_weights = _half_line(nodes[1])
     votes = np.empty((len(theta_step), len(rho_step), scans + 1))
     # Without noise each share is 0 or 1; the smallest spread that is a number gives the same.
     least = 1e-12 * float(np.min(rho_step))
-    _home_votes(
-        np.asarray(theta_step, dtype=float), np.asarray(rho_step, dtype=float), max(sigma, least), scans,
-        extent, probability, angles, angle_weights, places, place_weights, votes,
-    )  # fmt: skip
+    passage = Passage(max(float(sigma), least), scans, float(extent), float(probability))
+    every = Nodes(*_half_line(nodes[0]), *_half_line(nodes[1]))
+    _home_votes(np.asarray(theta_step, dtype=float), np.asarray(rho_step, dtype=float), passage, every, votes)
     return votes
 
 

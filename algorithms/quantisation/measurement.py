@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
 from algorithms.hough.grid import Grid
-from algorithms.hough.voting import FIRST, vote
+from algorithms.hough.voting import FIRST, GridArrays, vote
 from algorithms.plots import PlotChunk
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True)
-class CellCounts:
+class CellCounts(NamedTuple):
     """Votes that were counted in the accumulators of trials.
 
     Attributes
@@ -33,22 +32,52 @@ class CellCounts:
     cells: Counts
 
 
+class TargetLines(NamedTuple):
+    """Lines of the targets of a chunk.
+
+    Attributes
+    ----------
+    theta : float64 (targets,)
+    middle_x, middle_y : float64 (trials, targets), places of mid-track from the grid's origin
+    """
+
+    theta: Array
+    middle_x: Array
+    middle_y: Array
+
+
+class Rows(NamedTuple):
+    """Where the rows of a grid lie: row i has the angle (i + offset)·step."""
+
+    step: float
+    offset: float
+
+
 @kernel
-def _count(  # type: ignore[no-untyped-def]
-    x, y, offsets, shifts, theta, middle_x, middle_y, theta_step, theta_offset, rho_min, rho_step,
-    cosine, sine, accumulator, columns, home, block, cells,
-):  # fmt: skip
+def _count(x, y, offsets, shifts, lines, angles, fixed, accumulator, columns, counts):  # type: ignore[no-untyped-def]
+    """Write the counts of each trial, whose grid is the fixed one moved by its shifts.
+
+    Parameters
+    ----------
+    lines : `TargetLines`
+    angles : `Rows`
+    fixed : `GridArrays`; cosine and sine are written
+    counts : `CellCounts`, written
+    """
+    theta, home, block, cells = lines.theta, counts.home, counts.block, counts.cells
+    cosine, sine, rho_step, theta_step = fixed.cosine, fixed.sine, fixed.rho_step, angles.step
     rows, width = len(cosine), accumulator.shape[1] - 2
     most = cells.shape[1] - 1
     for trial in range(len(offsets) - 1):
         first, end = offsets[trial], offsets[trial + 1]
-        offset = theta_offset + shifts[trial, 0]
-        begin = rho_min - shifts[trial, 1] * rho_step
+        offset = angles.offset + shifts[trial, 0]
+        begin = fixed.rho_min - shifts[trial, 1] * rho_step
         for row in range(rows):
             angle = (row + offset) * theta_step
             cosine[row], sine[row] = math.cos(angle), math.sin(angle)
         accumulator[:] = 0
-        vote(x[first:end], y[first:end], cosine, sine, begin, rho_step, accumulator, columns)
+        moved = GridArrays(cosine, sine, width, begin, rho_step, fixed.origin)
+        vote(x[first:end], y[first:end], moved, accumulator, columns)
         for row in range(rows):
             for column in range(FIRST, FIRST + width):
                 cells[trial, min(np.int64(accumulator[row, column]), most)] += 1
@@ -56,7 +85,7 @@ def _count(  # type: ignore[no-untyped-def]
             # The row as the angle counts it may lie beyond the seam; ρ is taken in the row itself.
             beyond = math.floor(theta[target] / theta_step - offset + 0.5)
             row = beyond % rows
-            rho = middle_x[trial, target] * cosine[row] + middle_y[trial, target] * sine[row]
+            rho = lines.middle_x[trial, target] * cosine[row] + lines.middle_y[trial, target] * sine[row]
             column = math.floor((rho - begin) / rho_step)
             home[trial, target] = block[trial, target] = -1
             if 0 <= column < width:
@@ -91,15 +120,15 @@ def count_cells(
     """
     x, y = (np.ascontiguousarray(chunk.position[:, axis] - grid.origin[axis]) for axis in (0, 1))
     home, block = (np.empty((chunk.trials, len(theta)), np.int64) for _ in range(2))
-    cells = np.zeros((chunk.trials, most + 1), np.int64)
+    counts = CellCounts(home, block, np.zeros((chunk.trials, most + 1), np.int64))
+    lines = TargetLines(
+        np.asarray(theta, dtype=float),
+        *(np.ascontiguousarray(middle[..., axis] - grid.origin[axis]) for axis in (0, 1)),
+    )
     # One more column, so that the moved grid still reaches as far.
-    accumulator = np.zeros((grid.theta_bins, grid.rho_bins + 1 + 2), dtype=np.uint32)
+    fixed = GridArrays.of(grid)._replace(columns=grid.rho_bins + 1)
     _count(
-        x, y, chunk.offsets, shifts, np.asarray(theta, dtype=float),
-        np.ascontiguousarray(middle[..., 0] - grid.origin[0]),
-        np.ascontiguousarray(middle[..., 1] - grid.origin[1]),
-        grid.theta_step, grid.theta_offset, grid.rho_min, grid.rho_step,
-        np.empty(grid.theta_bins), np.empty(grid.theta_bins), accumulator,
-        np.empty(max(chunk.largest, 1), np.int32), home, block, cells,
+        x, y, chunk.offsets, shifts, lines, Rows(grid.theta_step, grid.theta_offset), fixed,
+        fixed.accumulator(), np.empty(max(chunk.largest, 1), np.int32), counts,
     )  # fmt: skip
-    return CellCounts(home, block, cells)
+    return counts

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from algorithms.hough.grid import Grid
-from algorithms.hough.search import Extraction, PeakSearch, search
+from algorithms.hough.peaks.threshold import Threshold
+from algorithms.hough.search import search
 from algorithms.hough.weighting import Weighting
 from algorithms.plots import Plots
 
@@ -64,7 +65,7 @@ def _seconds(count: int, grid: Grid, weighting: Weighting | None) -> float:
     reach = grid.rho_min / math.sqrt(2.0)
     position = np.random.default_rng(1).uniform(reach, -reach, (count, 2))
     chunk = Plots(np.zeros(count, np.int32), np.zeros(count), position).chunk()
-    peaks = PeakSearch(Extraction.THRESHOLD, OUT_OF_REACH)
+    peaks = Threshold(OUT_OF_REACH)
     # The first call loads the kernel, or compiles it.
     search(chunk, grid, peaks, weighting)
     found = []

@@ -60,33 +60,39 @@ def written(cells, count, row, column, value):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def column_of(x, y, cosine, sine, rho_min, rho_step, width):  # type: ignore[no-untyped-def]
+def column_of(ballot, row, plot):  # type: ignore[no-untyped-def]
     """Return the accumulator column of a plot's vote in a row, by the arithmetic of the voting kernel."""
+    grid, top = ballot.grid, ballot.votes.shape[1] - 1.0
     # The order of the operations is that of `vote`, so that a vote near an edge is found where it went.
-    place = x * (cosine / rho_step) + y * (sine / rho_step) + (FIRST - rho_min / rho_step)
+    place = (
+        ballot.x[plot] * (grid.cosine[row] / grid.rho_step)
+        + ballot.y[plot] * (grid.sine[row] / grid.rho_step)
+        + (FIRST - grid.rho_min / grid.rho_step)
+    )
     place = place if place > 0.0 else 0.0
-    return np.int64(place if place < width - 1.0 else width - 1.0)
+    return np.int64(place if place < top else top)
 
 
 @kernel
-def centroid(x, y, cosine, sine, rho_min, rho_step, width, column):  # type: ignore[no-untyped-def]
+def centroid(ballot, row, column):  # type: ignore[no-untyped-def]
     """Return the mean position of the plots that voted for a column of a row; at least one did."""
     voters, sum_x, sum_y = 0, 0.0, 0.0
-    for plot in range(len(x)):
-        if column_of(x[plot], y[plot], cosine, sine, rho_min, rho_step, width) == column:
+    for plot in range(len(ballot.x)):
+        if column_of(ballot, row, plot) == column:
             voters += 1
-            sum_x += x[plot]
-            sum_y += y[plot]
+            sum_x += ballot.x[plot]
+            sum_y += ballot.y[plot]
     return sum_x / voters, sum_y / voters
 
 
 @kernel
-def scatter(x, y, cosine, sine, rho_min, rho_step, width, column):  # type: ignore[no-untyped-def]
+def scatter(ballot, row, column):  # type: ignore[no-untyped-def]
     """Return the sample variance of the ρ that voted for a column of a row; infinite for fewer than two."""
+    cosine, sine = ballot.grid.cosine[row], ballot.grid.sine[row]
     voters, mean, squares = 0, 0.0, 0.0
-    for plot in range(len(x)):
-        if column_of(x[plot], y[plot], cosine, sine, rho_min, rho_step, width) == column:
-            rho = x[plot] * cosine + y[plot] * sine
+    for plot in range(len(ballot.x)):
+        if column_of(ballot, row, plot) == column:
+            rho = ballot.x[plot] * cosine + ballot.y[plot] * sine
             voters += 1
             step = rho - mean
             mean += step / voters
@@ -95,11 +101,12 @@ def scatter(x, y, cosine, sine, rho_min, rho_step, width, column):  # type: igno
 
 
 @kernel
-def least_scattered(values, value, last, x, y, cosine, sine, rho_min, rho_step):  # type: ignore[no-untyped-def]
+def least_scattered(ballot, value, last):  # type: ignore[no-untyped-def]
     """Return row and accumulator column of the cell, of those with a value, whose votes scatter least.
 
     Of equals the first in θ-major order is taken, or with `last` the last.
     """
+    values = ballot.values
     width = values.shape[1]
     best_row, best_column, least = -1, -1, np.inf
     for row in range(values.shape[0]):
@@ -111,7 +118,7 @@ def least_scattered(values, value, last, x, y, cosine, sine, rho_min, rho_step):
         for column in range(1, width - 1):
             if values[row, column] != value:
                 continue
-            found = scatter(x, y, cosine[row], sine[row], rho_min, rho_step, width, column)
-            if best_row < 0 or found < least or (last and found == least):
-                best_row, best_column, least = row, column, found
+            spread = scatter(ballot, row, column)
+            if best_row < 0 or spread < least or (last and spread == least):
+                best_row, best_column, least = row, column, spread
     return best_row, best_column

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
+from algorithms.hough.grid import Grid
+from algorithms.hough.peaks.ballots import trial_loop
 from algorithms.hough.peaks.cells import with_room
+from algorithms.hough.peaks.extraction import Extraction, greatest
 
 
 @kernel
@@ -45,3 +52,34 @@ def at_threshold(accumulator, votes, cells, count):  # type: ignore[no-untyped-d
             cells = with_room(cells, count + hits)
             count = _write_hits(accumulator, row, votes, cells, count)
     return cells, count
+
+
+class ThresholdRule(NamedTuple):
+    """What `threshold` needs to know: the least value of a cell."""
+
+    least: Any
+
+
+@kernel
+def _choose(ballot, rule, cells, count):  # type: ignore[no-untyped-def]
+    return at_threshold(ballot.values, rule.least, cells, count)
+
+
+@dataclass(frozen=True, slots=True)
+class Threshold(Extraction):
+    """Every cell with enough votes; of more than `maxima`, the greatest."""
+
+    name = "threshold"
+    summary = "every one"
+    cells_of_trials = trial_loop(_choose)
+
+    def rule(self, grid: Grid, threshold: Any) -> ThresholdRule:
+        """Return the least value of a cell."""
+        return ThresholdRule(threshold)
+
+    def limited(self, cells: NDArray[Any], ends: NDArray[np.int64]) -> tuple[NDArray[Any], NDArray[np.int64]]:
+        """Return the greatest cells of each trial, at most `maxima`."""
+        return greatest(cells, ends, self.most, self.last)
+
+
+EXTRACTION = Threshold

@@ -8,7 +8,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from algorithms.hough.grid import Grid
-from algorithms.hough.search import Extraction, PeakSearch, search
+from algorithms.hough.peaks.registry import EXTRACTIONS
+from algorithms.hough.search import search
 from algorithms.hough.voting import accumulate
 from algorithms.hough.weighting import Weighting, accumulate_weighted
 
@@ -147,10 +148,12 @@ def compare(found, expected, grid):
     np.testing.assert_allclose(found.score, [cell[2] for cell in expected], rtol=1e-12)
 
 
-CASES = {
-    Extraction.BEST_FIRST: best_first,
-    Extraction.VOTE_REMOVAL: vote_removal,
-}
+CASES = {"best-first": best_first, "vote-removal": vote_removal}
+
+
+def peaks_of(name, votes, maxima=None, rows=0, columns=0, last=True, wrap=True):
+    choices = {"votes": votes, "maxima": maxima, "rows": rows, "columns": columns, "last": last, "wrap": wrap}
+    return EXTRACTIONS[name].of(choices)
 
 
 @steady
@@ -164,7 +167,7 @@ def test_peaks_are_those_of_a_loop_over_all_cells(
     # A little noise, so that no two cells scatter equally but for those of the same plots at the same places.
     noise = np.random.default_rng(seed).normal(0, 1e-3, (len(trial), 2))
     chunk = chunk_of([(scan, x + dx, y + dy) for (scan, x, y), (dx, dy) in zip(trial, noise, strict=True)])
-    peaks = PeakSearch(extraction, threshold, maxima, *window, last, wrap)
+    peaks = peaks_of(extraction, threshold, maxima, *window, last, wrap)
     found = search(chunk, grid, peaks, weighting)
     oracle = Oracle(chunk.position, grid, weighting)
     compare(found, CASES[extraction](oracle, threshold, *window, last, wrap, maxima), grid)
@@ -180,7 +183,7 @@ def test_groups_are_those_of_the_thesis(
 ):
     noise = np.random.default_rng(seed).normal(0, 1e-3, (len(trial), 2))
     chunk = chunk_of([(scan, x + dx, y + dy) for (scan, x, y), (dx, dy) in zip(trial, noise, strict=True)])
-    peaks = PeakSearch(Extraction.THESIS, threshold, maxima, *window, last)
+    peaks = peaks_of("thesis", threshold, maxima, *window, last)
     found = search(chunk, grid, peaks, weighting)
     compare(found, thesis(Oracle(chunk.position, grid, weighting), threshold, *window, last, maxima), grid)
 
@@ -190,14 +193,14 @@ def test_groups_are_those_of_the_thesis(
 def test_the_greatest_of_the_cells_at_a_threshold(chunk_of, trial, weighting, threshold, maxima, last):
     grid = GRIDS[0]
     chunk = chunk_of(trial)
-    found = search(chunk, grid, PeakSearch(Extraction.THRESHOLD, threshold, maxima, last=last), weighting)
+    found = search(chunk, grid, peaks_of("threshold", threshold, maxima, last=last), weighting)
     values = Oracle(chunk.position, grid, weighting).values()
     cells = [tuple(map(int, cell)) for cell in np.argwhere(values >= threshold)]
     order = sorted(range(len(cells)), key=lambda k: (-values[cells[k]], -k if last else k))
     compare(found, [(*cells[k], values[cells[k]]) for k in sorted(order[:maxima])], grid)
 
 
-EVERY = [PeakSearch(extraction, 2, None, 2, 2) for extraction in Extraction]
+EVERY = [peaks_of(extraction, 2, None, 2, 2) for extraction in EXTRACTIONS]
 
 
 @steady
@@ -214,18 +217,18 @@ def test_a_trial_gives_the_same_in_a_chunk_as_alone(chunk_of, trials, peaks, wei
 
 
 @pytest.mark.parametrize("weighting", WEIGHTINGS)
-@pytest.mark.parametrize("extraction", list(Extraction))
+@pytest.mark.parametrize("extraction", list(EXTRACTIONS))
 def test_a_threshold_that_no_cell_reaches_gives_no_track(chunk_of, extraction, weighting):
     trial = [(scan, 0.5 + 0.25 * scan, 2.0) for scan in range(4)]
-    found = search(chunk_of(trial, []), GRIDS[0], PeakSearch(extraction, 5, None, 3, 3), weighting)
+    found = search(chunk_of(trial, []), GRIDS[0], peaks_of(extraction, 5, None, 3, 3), weighting)
     assert found.counts.tolist() == [0, 0]
-    assert search(chunk_of(), GRIDS[0], PeakSearch(extraction, 1), weighting).counts.tolist() == []
+    assert search(chunk_of(), GRIDS[0], peaks_of(extraction, 1), weighting).counts.tolist() == []
 
 
-@pytest.mark.parametrize("extraction", list(Extraction))
+@pytest.mark.parametrize("extraction", list(EXTRACTIONS))
 def test_no_cell_above_the_floor_gives_no_track(chunk_of, extraction):
     trial = [(scan, 0.5 + 0.25 * scan, 2.0) for scan in range(4)]
-    peaks = PeakSearch(extraction, 1, None, 3, 3)
+    peaks = peaks_of(extraction, 1, None, 3, 3)
     assert search(chunk_of(trial), GRIDS[0], peaks, Weighting(True, 2.0, 4)).counts.tolist() == [0]
     assert search(chunk_of(trial), GRIDS[0], peaks, Weighting(True, 2.0, 3)).counts[0] > 0
 
@@ -233,12 +236,12 @@ def test_no_cell_above_the_floor_gives_no_track(chunk_of, extraction):
 def test_the_literal_end_of_the_thesis_would_have_hidden_the_second_line(chunk_of):
     # Two lines whose first groups have more than one candidate each; both are found.
     trial = [(scan, -3.0, 4.0 - scan) for scan in range(8)] + [(scan, 6.0 - scan, 3.0) for scan in range(8)]
-    found = search(chunk_of(sorted(trial)), GRIDS[2], PeakSearch(Extraction.THESIS, 6, None, 4, 2))
+    found = search(chunk_of(sorted(trial)), GRIDS[2], peaks_of("thesis", 6, None, 4, 2))
     assert {round(float(np.degrees(theta)) / 30) % 6 for theta in found.theta} >= {0, 3}
 
 
 def test_windows_larger_than_the_accumulator_leave_one_maximum(chunk_of):
     trial = [(0, 1.0, 1.0), (1, 1.0, 2.0), (2, -3.0, 4.0)]
-    for extraction in (Extraction.BEST_FIRST, Extraction.THESIS, Extraction.VOTE_REMOVAL):
-        peaks = PeakSearch(extraction, 1, None, 10**12, 10**12)
+    for extraction in ("best-first", "thesis", "vote-removal"):
+        peaks = peaks_of(extraction, 1, None, 10**12, 10**12)
         assert search(chunk_of(trial), GRIDS[0], peaks).counts.tolist() == [1]

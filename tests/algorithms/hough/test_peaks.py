@@ -9,7 +9,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from algorithms.hough.peaks import at_threshold, clear_window, maximum, successive_maxima
+from algorithms.hough.peaks.ballots import Ballot
+from algorithms.hough.peaks.cells import maximum
+from algorithms.hough.peaks.sequential import SequentialRule, clear_window, successive_maxima
+from algorithms.hough.peaks.threshold import at_threshold
+from algorithms.hough.voting import GridArrays
 
 steady = settings(
     deadline=None, derandomize=True, max_examples=200, suppress_health_check=[HealthCheck.too_slow]
@@ -62,12 +66,22 @@ def brute_force_maxima(votes, least, maxima, rows, columns, last, wrap, rho_min,
     return found, left
 
 
+def grid_of(votes, rho_min, rho_step):
+    nothing = np.empty(0)
+    return GridArrays(nothing, nothing, votes.shape[1], rho_min, rho_step, (0.0, 0.0))
+
+
+def clear(padded, row, column, rows, columns, wrap, rho_min, rho_step):
+    rule = SequentialRule(np.uint32(1), 1, rows, columns, wrap, True)
+    clear_window(padded, row, column, rule, grid_of(padded, rho_min, rho_step))
+
+
 def run_maxima(votes, least, maxima, rows, columns, last, wrap, rho_min, rho_step):
-    padded = with_sentinels(votes)
-    cells, count = successive_maxima(
-        padded, np.uint32(least), maxima, rows, columns, last, wrap, rho_min, rho_step,
-        np.empty((1, 3), np.int64), 0,
-    )  # fmt: skip
+    padded, nothing = with_sentinels(votes), np.empty(0)
+    grid = grid_of(votes, rho_min, rho_step)
+    ballot = Ballot(nothing, nothing, grid, padded, padded, None, np.empty(0, np.int32))
+    rule = SequentialRule(np.uint32(least), maxima, rows, columns, wrap, last)
+    cells, count = successive_maxima(ballot, rule, np.empty((1, 3), np.int64), 0)
     return [tuple(cell) for cell in cells[:count].tolist()], padded
 
 
@@ -98,7 +112,7 @@ def test_clearing_touches_the_window_and_nothing_else(data, votes, wrap, rho_min
     # Fewer rows than there are: beyond, every row is reached without crossing the seam.
     rows, columns = data.draw(st.integers(0, height - 1)), data.draw(st.integers(0, width + 2))
     padded = with_sentinels(votes)
-    clear_window(padded, row, column + 1, rows, columns, wrap, rho_min, rho_step)
+    clear(padded, row, column + 1, rows, columns, wrap, rho_min, rho_step)
     expected = votes.copy()
     for cell in window(votes.shape, row, column, rows, columns, wrap, rho_min, rho_step):
         expected[cell] = 0
@@ -126,7 +140,7 @@ def test_a_window_across_the_seam_clears_the_mirror_image():
     # Ten columns about 0: column 7 on one side of the seam is column 2 on the other.
     votes = np.ones((6, 10), np.uint32)
     padded = with_sentinels(votes)
-    clear_window(padded, 0, 8, 1, 1, True, -5.0, 1.0)
+    clear(padded, 0, 8, 1, 1, True, -5.0, 1.0)
     cleared = {(row, column) for row, column in np.argwhere(padded[:, 1:-1] == 0).tolist()}
     assert cleared == {(row, column) for row in (0, 1) for column in (6, 7, 8)} | {(5, 1), (5, 2), (5, 3)}
 
@@ -134,7 +148,7 @@ def test_a_window_across_the_seam_clears_the_mirror_image():
 def test_a_window_that_stops_at_the_edges_leaves_the_other_side():
     votes = np.ones((6, 10), np.uint32)
     padded = with_sentinels(votes)
-    clear_window(padded, 5, 1, 2, 3, False, -5.0, 1.0)
+    clear(padded, 5, 1, 2, 3, False, -5.0, 1.0)
     cleared = {(row, column) for row, column in np.argwhere(padded[:, 1:-1] == 0).tolist()}
     assert cleared == {(row, column) for row in (3, 4, 5) for column in (0, 1, 2, 3)}
 

@@ -6,7 +6,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from algorithms.hough.grid import Grid
-from algorithms.hough.search import Extraction, PeakSearch, search
+from algorithms.hough.peaks.sequential import Sequential
+from algorithms.hough.peaks.threshold import Threshold
+from algorithms.hough.search import search
 from algorithms.hough.voting import accumulate
 
 steady = settings(
@@ -14,8 +16,8 @@ steady = settings(
 )
 
 GRID = Grid(18, 40, -10.0, 0.5, (1.0, 2.0))
-THRESHOLD = PeakSearch(Extraction.THRESHOLD, 3)
-SUCCESSIVE = PeakSearch(Extraction.SUCCESSIVE, 2, maxima=4, suppress_theta=2, suppress_rho=3)
+THRESHOLD = Threshold(3)
+SUCCESSIVE = Sequential(2, maxima=4, rows=2, columns=3)
 
 quarter = st.integers(-40, 40).map(lambda quarters: quarters / 4)
 point = st.tuples(st.integers(0, 3), quarter, quarter)
@@ -41,7 +43,7 @@ def test_a_trial_gives_the_same_in_a_chunk_as_alone(chunk_of, trials, peaks):
 def test_tracks_at_a_threshold_are_the_cells_of_the_accumulator(chunk_of, trial, least):
     chunk = chunk_of(trial)
     votes = accumulate(chunk.position, GRID)
-    found = search(chunk, GRID, PeakSearch(Extraction.THRESHOLD, least))
+    found = search(chunk, GRID, Threshold(least))
     rows, columns = np.nonzero(votes.votes >= least)
     theta, rho = GRID.lines(rows, columns)
     np.testing.assert_array_equal(found.theta, theta)
@@ -68,12 +70,12 @@ def test_a_chunk_without_trials_or_plots_has_no_tracks(chunk_of, peaks):
 
 def test_a_great_number_of_tracks_is_kept_whole(chunk_of):
     # One plot votes in every row: 18 tracks a trial, beyond the room made at first.
-    found = search(chunk_of(*[[(0, 0.1, 0.2)]] * 200), GRID, PeakSearch(Extraction.THRESHOLD, 1))
+    found = search(chunk_of(*[[(0, 0.1, 0.2)]] * 200), GRID, Threshold(1))
     assert found.counts.tolist() == [18] * 200
     assert np.ptp(found.rho.reshape(200, 18), axis=0).max() == 0
 
 
 def test_windows_larger_than_the_accumulator_leave_one_maximum(chunk_of):
     trial = [(0, 1.0, 1.0), (1, 1.0, 2.0), (2, -3.0, 4.0)]
-    peaks = PeakSearch(Extraction.SUCCESSIVE, 1, maxima=9, suppress_theta=10**12, suppress_rho=10**12)
+    peaks = Sequential(1, maxima=9, rows=10**12, columns=10**12)
     assert search(chunk_of(trial), GRID, peaks).counts.tolist() == [1]

@@ -8,9 +8,9 @@ import pytest
 from algorithms.context import Box, Context, Unit
 from algorithms.errors import RequestError
 from algorithms.hough.grid import Grid
-from algorithms.hough.search import Extraction
-from algorithms.hough.windows import ASSUMED_SPEED, peak_width, suppression
-from algorithms.initiators.accumulating import EXTRACTIONS, AccumulatingParameters
+from algorithms.hough.peaks.best_first import ASSUMED_SPEED, BestFirst, peak_width
+from algorithms.hough.peaks.registry import EXTRACTIONS
+from algorithms.initiators.accumulating import AccumulatingParameters
 from algorithms.initiators.registry import initiator
 from algorithms.initiators.sequential import SequentialParameters
 from algorithms.initiators.standard import StandardParameters
@@ -155,16 +155,16 @@ def test_the_width_of_a_peak_is_where_its_votes_fall_below_the_threshold():
 def test_the_window_of_best_first_is_twice_the_width_of_a_peak_at_the_assumed_speed():
     grid = StandardParameters().resolved(SCENE).grid.grid(SCENE)
     length = ASSUMED_SPEED / 1000 * 4.0 * 19
-    rows, columns = suppression(Extraction.BEST_FIRST, grid, SCENE, 18)
+    rows, columns = BestFirst.default_window(grid, SCENE, 18)
     assert rows == math.ceil(2 * peak_width(grid, 18.0, length, 18))
     assert columns == 2
     in_metres = Context(20, 4.0, 0.9, (100.0, 100.0), Box((0.0, 0.0), (1e5, 1e5)), Unit.METRE)
     metres = StandardParameters().resolved(in_metres).grid.grid(in_metres)
-    assert suppression(Extraction.BEST_FIRST, metres, in_metres, 18) == (rows, columns)
+    assert BestFirst.default_window(metres, in_metres, 18) == (rows, columns)
 
 
 def test_the_window_of_best_first_stays_below_an_eighth_of_a_turn():
     grid = Grid(90, 100, -50.0, 1.0)
     for context in (SCENE, Context(1, 4.0, 1.0, None, SCENE.region)):
-        assert suppression(Extraction.BEST_FIRST, grid, context, 1)[0] == 22
-    assert suppression(Extraction.BEST_FIRST, Grid(1, 100, -50.0, 1.0), SCENE, 1)[0] == 1
+        assert BestFirst.default_window(grid, context, 1)[0] == 22
+    assert BestFirst.default_window(Grid(1, 100, -50.0, 1.0), SCENE, 1)[0] == 1

@@ -13,6 +13,8 @@ from algorithms import compiled, notices
 from algorithms.compiled import Kernel
 from algorithms.kernel_cache import overloads
 from algorithms.kernel_cache.folder import KernelFolder
+from algorithms.kinematics.gates import can_fly
+from algorithms.kinematics.strips import strip
 
 PROJECT = Path(__file__).parents[3]
 
@@ -158,3 +160,17 @@ def test_kernels_lie_in_the_cache_and_nowhere_else(tmp_path):
     assert {path.parent for path in tmp_path.rglob("*.nbc")} == {*(home / ".cache/hough-tui").iterdir()}
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "home", "site"]
     assert [path.name for path in site.iterdir()] == ["plug.py"]
+
+
+def test_kernels_made_around_different_kernels_have_different_names():
+    # numba names machine code after the function; of one name, the code of one would run for both.
+    def around(inner):
+        def call(x):
+            return inner(x)
+
+        return Kernel(call)
+
+    names = {around(inner).name for inner in (can_fly, strip)}
+    assert len(names) == 2
+    assert {around(inner).name for inner in (can_fly, strip)} == names
+    assert pickle.loads(pickle.dumps(can_fly)) is can_fly
