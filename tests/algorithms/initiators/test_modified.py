@@ -214,7 +214,8 @@ def test_a_track_has_the_line_and_the_state_of_its_plots():
     assert tracks.rho[0] == pytest.approx(0.0, abs=1e-12)
     assert tracks.states.velocity[0] == pytest.approx([0.25, 0.125])
     assert tracks.states.position[0] == pytest.approx([0.0, 0.0], abs=1e-12)
-    assert (tracks.fitted_theta[0], tracks.fitted_rho[0]) == pytest.approx((tracks.theta[0], 0.0), abs=1e-12)
+    theta, rho = tracks.states.lines
+    assert (theta[0], rho[0]) == pytest.approx((tracks.theta[0], 0.0), abs=1e-12)
 
 
 def test_reversal_is_refused_in_sound_mode_and_kept_in_document_mode():
@@ -290,7 +291,7 @@ def test_coordinates_of_a_billion_give_the_same_triples():
     assert len(near) > 0
     assert [found.tolist() for found in near.plots] == [found.tolist() for found in far.plots]
     assert far.theta == pytest.approx(near.theta)
-    assert far.velocity == pytest.approx(near.velocity, abs=1e-6)
+    assert far.states.velocity == pytest.approx(near.states.velocity, abs=1e-6)
 
 
 def test_trials_without_plots_between_others_have_no_tracks(chunk_of):

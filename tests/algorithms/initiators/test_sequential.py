@@ -79,7 +79,7 @@ def test_as_many_maxima_as_asked_for_the_greatest_first():
 def test_two_targets_take_the_two_maxima_with_their_own_plots():
     tracks = initiate(two_targets(), maxima=2)
     assert sorted(tuple((rows % 2).tolist()) for rows in tracks.plots) == [(0,) * 8, (1,) * 8]
-    slow, fast = sorted(tracks.velocity.tolist(), reverse=True)
+    slow, fast = sorted(tracks.states.velocity.tolist(), reverse=True)
     assert slow == pytest.approx([1 / 4, 0.5 / 4], abs=1e-9)
     assert fast == pytest.approx([-1.2 / 4, 0.1 / 4], abs=1e-9)
 
@@ -95,7 +95,7 @@ def test_without_a_threshold_any_cell_with_a_vote_may_be_a_maximum():
     one = plots_of([(0, 5.0, 5.0)])
     tracks = initiate(one, maxima=500, suppress_theta=0, suppress_rho=0, grid={"theta_bins": 15})
     assert len(tracks) == 15
-    assert np.isnan(tracks.velocity).all()
+    assert np.isnan(tracks.states.velocity).all()
 
 
 def test_a_target_along_the_seam_is_found_once_in_sound_mode_and_twice_in_document_mode():
@@ -124,13 +124,13 @@ def test_ties_take_the_first_or_the_last_row(ties):
 def test_identical_plots_are_one_maximum_after_another():
     tracks = initiate(plots_of([(scan, 33.0, 44.0) for scan in range(8)]), maxima=3)
     assert tracks.score.tolist() == [8.0] * 3
-    assert (tracks.velocity == 0).all()
+    assert (tracks.states.velocity == 0).all()
 
 
 def test_plots_of_one_scan_have_no_velocity():
     tracks = initiate(plots_of([(2, 33.0 + k, 44.0) for k in range(8)]))
     assert tracks.score[0] == 8
-    assert np.isnan(tracks.velocity).all()
+    assert np.isnan(tracks.states.velocity).all()
 
 
 def test_trials_without_plots_between_others_have_no_tracks(chunk_of):

@@ -115,14 +115,14 @@ def test_a_target_without_noise_comes_out_with_its_state_whatever_its_heading(he
     # The row nearest to its line spreads six plots over two columns at most.
     tracks = initiate(plots_of(rows), votes=3)
     line = line_through(start, velocity)
-    angle, distance = line_distance(tracks.fitted_theta, tracks.fitted_rho, *line)
+    angle, distance = line_distance(*tracks.states.lines, *line)
     exact = np.flatnonzero((angle < 1e-6) & (distance < 1e-4))
     assert len(exact)
     # A cell that the target merely touches has fewer of its plots.
     best = max(exact, key=lambda track: len(tracks.plots[track]))
     assert tracks.plots[best].tolist() == [10 + 11 * scan for scan in range(6)]
-    assert tracks.velocity[best] == pytest.approx(velocity, abs=1e-9)
-    assert tracks.position[best] == pytest.approx(start, abs=1e-9)
+    assert tracks.states.velocity[best] == pytest.approx(velocity, abs=1e-9)
+    assert tracks.states.position[best] == pytest.approx(start, abs=1e-9)
 
 
 def test_the_tracks_are_the_cells_at_the_threshold():
@@ -142,16 +142,16 @@ def test_the_tracks_are_the_cells_at_the_threshold():
 def test_no_plot_or_one_plot_reaches_no_threshold_of_six(rows):
     tracks = initiate(plots_of(rows))
     assert len(tracks) == 0
-    assert tracks.velocity.shape == (0, 2)
+    assert tracks.states.velocity.shape == (0, 2)
     assert tracks.plots == ()
 
 
 def test_one_plot_with_one_vote_is_a_track_in_every_row_without_velocity():
     tracks = initiate(plots_of([(2, 5.0, 6.0)]), votes=1, grid={"theta_bins": 12})
     assert len(tracks) == 12
-    assert np.isnan(tracks.velocity).all()
+    assert np.isnan(tracks.states.velocity).all()
     assert [rows.tolist() for rows in tracks.plots] == [[0]] * 12
-    assert tracks.position.tolist() == [[5.0, 6.0]] * 12
+    assert tracks.states.position.tolist() == [[5.0, 6.0]] * 12
 
 
 @pytest.mark.parametrize("scans", [[0] * 8, [0, 1, 2, 3, 4, 5, 5, 5]])
@@ -161,13 +161,13 @@ def test_identical_plots_fill_one_cell_in_every_row(scans):
     for rows in tracks.plots:
         assert len(rows) == len(set(scans))
     still = len(set(scans)) > 1
-    assert (tracks.velocity == 0).all() if still else np.isnan(tracks.velocity).all()
+    assert (tracks.states.velocity == 0).all() if still else np.isnan(tracks.states.velocity).all()
 
 
 def test_plots_of_one_scan_alone_are_tracks_without_velocity():
     tracks = initiate(plots_of([(4, 10.0 + k, 20.0) for k in range(7)]))
     assert len(tracks) > 0
-    assert np.isnan(tracks.velocity).all()
+    assert np.isnan(tracks.states.velocity).all()
     assert all(len(rows) == 1 for rows in tracks.plots)
 
 
@@ -178,7 +178,7 @@ def test_coordinates_of_a_billion_give_the_tracks_of_the_origin():
     far = initiate(plots_of(rows + np.array([0, 1e9, 1e9])), far_scene)
     np.testing.assert_array_equal(far.theta, near.theta)
     np.testing.assert_array_equal(far.score, near.score)
-    assert far.velocity == pytest.approx(near.velocity, abs=1e-6)
+    assert far.states.velocity == pytest.approx(near.states.velocity, abs=1e-6)
     assert [found.tolist() for found in far.plots] == [found.tolist() for found in near.plots]
 
 
@@ -186,8 +186,10 @@ def test_the_height_of_plots_changes_nothing():
     rows = [(scan, 40 + scan, 20 + 0.6 * scan) for scan in range(6)]
     flat = plots_of(rows)
     high = Plots(flat.scan, flat.time, np.column_stack([flat.position, [7.0, -3, 1e6, 0, 2, 9]]))
-    for column in ("theta", "rho", "score", "velocity", "fitted_theta"):
-        np.testing.assert_array_equal(getattr(initiate(high), column), getattr(initiate(flat), column))
+    above, below = initiate(high), initiate(flat)
+    for column in ("theta", "rho", "score"):
+        np.testing.assert_array_equal(getattr(above, column), getattr(below, column))
+    np.testing.assert_array_equal(above.states.velocity, below.states.velocity)
 
 
 def test_votes_outside_the_grid_are_counted():

@@ -63,7 +63,7 @@ def test_the_floor_is_four_tenths_of_the_expected_votes(scans, probability, expe
 def test_one_target_is_one_track_with_its_state():
     tracks = initiate(one_target(clutter=100))
     best = int(np.argmax(tracks.score))
-    assert tracks.velocity[best] == pytest.approx([0.25, 0.15], abs=0.01)
+    assert tracks.states.velocity[best] == pytest.approx([0.25, 0.15], abs=0.01)
     assert len(tracks.plots[best]) >= 18
 
 
