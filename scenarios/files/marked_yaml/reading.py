@@ -23,6 +23,7 @@ from scenarios.files.marked_yaml.syntax import (
     CORE,
     DEEPEST,
     LINE_END,
+    MERGE,
     MOST_COPIES,
     Path,
     match_end,
@@ -97,7 +98,8 @@ def read(text: str, source: str) -> MarkedDocument:
     empty document is None. Every use of an alias gets data of its own.
 
     Raises `RequestError`, with line and column, for text that is not YAML, duplicate keys, keys that are not
-    text, tags, a second document, recursive or exploding aliases, and nesting that is too deep.
+    text, merge keys, tags, a second document, recursive or exploding aliases, and nesting that is too deep.
+    Only the first of these is named: what else would be wrong, such as missing fields, may follow from it.
     """
     root = Reader(text, source).root
     return MarkedDocument(root.value if root else None, source, root)
@@ -230,6 +232,9 @@ class Reader:
             key = self.key(event, node, depth) if is_map else None
             child = self.node(self.event() if key else event, depth + 1)
             if key and child.start == child.end and self.text[child.start - 1] != ":":
+                if ":" in key.value and self.text[key.start : key.end] == key.value:
+                    spaced = key.value.replace(":", ": ", 1)
+                    raise self.failure(key.mark, f"{key.value} is no field with a value; write {spaced}")
                 # PyYAML puts the value of a key without a colon in front of whatever comes next.
                 child.start, child.end, child.mark = key.end, key.end, key.mark
             if key:
@@ -250,7 +255,11 @@ class Reader:
         return node
 
     def key(self, event: Any, mapping: Node, depth: int) -> Node:
-        """Read a key of a mapping; it must be text, and new."""
+        """Read a key of a mapping; it must be text, and new, and no merge key of YAML 1.1."""
+        is_plain = isinstance(event, yaml.ScalarEvent) and not event.style
+        if is_plain and event.value == MERGE and event.tag in (None, CORE + "merge"):
+            message = f"merge keys ({MERGE}) are not YAML 1.2; write the fields out"
+            raise self.failure(event.start_mark, message)
         key = self.node(event, depth + 1)
         if not isinstance(key.value, str):
             shown = " ".join(self.text[key.start : key.end].split())[:40] or "(none)"

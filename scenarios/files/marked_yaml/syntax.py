@@ -40,6 +40,8 @@ _SCALARS: tuple[tuple[re.Pattern[str], Callable[[str], Any]], ...] = (
     (re.compile(r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)"), lambda text: float(text.replace(".", ""))),
 )
 CORE = "tag:yaml.org,2002:"
+MERGE = "<<"
+"""A key that YAML 1.1 has replaced by the fields of its value; without quotes it is refused."""
 
 
 def match_end(pattern: re.Pattern[str], text: str, position: int) -> int:

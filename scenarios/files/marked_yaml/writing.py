@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from algorithms.errors import RequestError
-from scenarios.files.marked_yaml.syntax import DEEPEST, LONGEST_KEY, SHORT, Path, scalar_maker
+from scenarios.files.marked_yaml.syntax import DEEPEST, LONGEST_KEY, MERGE, SHORT, Path, scalar_maker
 
 
 def write(data: Any) -> str:
@@ -71,7 +71,7 @@ def _text(value: str, flow: bool, quote: str = "") -> str:
 
 def key_text(key: str | None, flow: bool, between: str) -> str:
     """Return a key with its colon, or the dash of a list item where there is none."""
-    text = "-" if key is None else _text(key, flow)
+    text = "-" if key is None else _text(key, flow, '"' if key == MERGE else "")
     return text if key is None else f"{text}:" if len(text) <= LONGEST_KEY else f"? {text}{between}:"
 
 

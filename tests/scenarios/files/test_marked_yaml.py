@@ -54,15 +54,17 @@ def test_core_schema(text: str, value: Any) -> None:
 @pytest.mark.parametrize(
     "text",
     ["no", "yes", "on", "off", "y", "n", "No", "tRUE", "nUll", "12:30", "2001-01-01", "1_000", "0b1", "0O17",
-     "-0x1F", "1e", ".e5", "e5", ".", "-.", "inf", "nan", "-.nan", "٣", "<<", "=", "1.2.3", "1 000"],
+     "-0x1F", "1e", ".e5", "e5", ".", "-.", "inf", "nan", "-.nan", "٣", "=", "1.2.3", "1 000"],
 )  # fmt: skip
 def test_all_else_is_text(text: str) -> None:
     assert same(data_of(f"a: {text}"), {"a": text})
     assert data_of(f"{text}: 1") == {text: 1}
 
 
-def test_merge_key_is_a_plain_key() -> None:
-    assert data_of("a: &x {p: 1}\nb:\n  <<: *x\n") == {"a": {"p": 1}, "b": {"<<": {"p": 1}}}
+def test_two_arrows_are_text_but_as_a_key_need_quotes() -> None:
+    assert data_of("a: <<\n'<<': b\n") == {"a": "<<", "<<": "b"}
+    assert data_of(write({"<<": {"<<": 1}})) == {"<<": {"<<": 1}}
+    assert data_of(rewrite("a: 1\n", {"a": 1, "<<": 2})) == {"a": 1, "<<": 2}
 
 
 @pytest.mark.parametrize("text", ["", "\n", "# nothing\n", "---\n", "---\n# nothing\n...\n"])
@@ -165,6 +167,13 @@ DEEP_ALIASES = "- &a0 " + "[" * 60 + "]" * 60 + "\n- " + "[" * 60 + "*a0" + "]" 
         ("a: !!python/name:os.system ''", "1:4", ["!!python/name:os.system"]),
         ("a: !!set {b}", "1:4", ["!!set"]),
         ("a: !!map [1]", "1:4", ["!!map"]),
+        ("a: &x {p: 1}\nb:\n  <<: *x\n", "3:3", ["merge keys (<<) are not YAML 1.2; write the fields out"]),
+        ("- &x {p: 1}\n- q: {<<: *x, r: 2}\n", "2:7", ["merge keys (<<)"]),
+        ("- &x {p: 1}\n- q: 1\n  <<: [*x, *x]\n", "3:3", ["merge keys (<<)"]),
+        ("- !!merge <<: *x\n", "1:3", ["merge keys (<<)"]),
+        ("- ? <<\n  : {p: 1}\n", "1:5", ["merge keys (<<)"]),
+        ("a: {<<}\n", "1:5", ["merge keys (<<)"]),
+        ("a: {scans:5, interval: 4}", "1:5", ["scans:5 is no field with a value; write scans: 5"]),
         ("a: 1\n---\nb: 2\n", "2:1", ["second document", "file of its own"]),
         ("a: 1\n...\n---\n", "3:1", ["second document"]),
         ("a: 1\nb: *x", "2:4", ["*x", "no anchor"]),

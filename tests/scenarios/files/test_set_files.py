@@ -132,6 +132,26 @@ def test_scalars_are_those_of_yaml_1_2():
 # Saving
 
 
+@pytest.mark.parametrize(
+    ("part", "cause"),
+    [
+        ("<<: *base", "merge keys (<<) are not YAML 1.2; write the fields out"),
+        ("name: !foo two", "the tag !foo means nothing here; remove it"),
+        ("name: *other", "the alias *other has no anchor before it; write the value out"),
+        ("\tname: two", "not valid YAML: "),
+        ("{scans:5}", "scans:5 is no field with a value; write scans: 5"),
+    ],
+)
+def test_the_cause_of_missing_fields_is_named_alone(part, cause):
+    text = TEXT.replace("  - targets: []", f"  - {part}\n  - &base\n    targets: []")
+    line = text[: text.index(part)].count("\n") + 1
+    told = refusal(parsed, text)
+    assert told.startswith(f"mine.yaml:{line}:")
+    assert cause in told
+    assert "missing" not in told
+    assert "\n" not in told
+
+
 def test_a_set_is_saved_with_the_fields_that_were_given_and_no_others():
     given = parsed()
     assert set_data(given) == read(TEXT, "mine.yaml").data
