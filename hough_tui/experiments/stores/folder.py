@@ -6,7 +6,6 @@ import json
 import os
 import secrets
 import shutil
-import tempfile
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,6 +20,7 @@ from algorithms.errors import RequestError
 from algorithms.parameters import unknown
 from hough_tui.directories import data_directory
 from hough_tui.experiments.formats import upgraded
+from hough_tui.experiments.stores.left_overs import REMOVED, UNFINISHED, remove_left_overs, working_folder
 from scenarios.files.marked_yaml import write
 from scenarios.files.set_files import parse_set, read_text, set_data
 from scenarios.model import ScenarioSet
@@ -72,11 +72,12 @@ class FolderStore(RunStore):
     """Runs as folders below the data directory, each moved into place when it is whole.
 
     A run's folder holds `sets/NAME.yaml`, `result.json` and `trials.npz`, whose arrays are
-    named `ROW.COLUMN`.
+    named `ROW.COLUMN`. What processes that were killed left here is removed when the store is opened.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
         self.folder = folder or data_directory() / "runs"
+        remove_left_overs(self.folder)
 
     def add(self, run: Run) -> str:
         """Keep a run, wholly or not at all, and return its name.
@@ -89,8 +90,7 @@ class FolderStore(RunStore):
         self.folder.mkdir(parents=True, exist_ok=True)
         names = "+".join(given.name for given in run.sets)[:60]
         name = f"{datetime.now():%Y%m%d-%H%M%S}-{names}-{secrets.token_hex(2)}"
-        temporary = Path(tempfile.mkdtemp(dir=self.folder, prefix=".unfinished-"))
-        try:
+        with working_folder(self.folder, UNFINISHED) as temporary:
             (temporary / "sets").mkdir()
             for given in run.sets:
                 (temporary / "sets" / f"{given.name}.yaml").write_text(
@@ -110,9 +110,6 @@ class FolderStore(RunStore):
             )
             temporary.chmod(0o755)
             os.replace(temporary, self.folder / name)
-        except BaseException:
-            shutil.rmtree(temporary, ignore_errors=True)
-            raise
         return name
 
     def names(self) -> list[str]:
@@ -178,9 +175,9 @@ class FolderStore(RunStore):
         if name not in known:
             raise RequestError(unknown(name, known[:10], "run"))
         # Renamed first: a run that is removed in part only must not be listed.
-        doomed = self.folder / f".removed-{secrets.token_hex(4)}"
-        os.replace(self.folder / name, doomed)
-        shutil.rmtree(doomed)
+        with working_folder(self.folder, REMOVED) as doomed:
+            os.replace(self.folder / name, doomed / name)
+            shutil.rmtree(doomed / name)
 
     def full_name(self, name: str) -> str:
         """Return the name of a run from a part of it that fits no other.
