@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,6 +10,8 @@ from pydantic import BaseModel
 from rich.text import Text
 
 from algorithms.context import Unit
+from algorithms.parameters import Path
+from hough_tui.ui.forms.alternatives import discriminator
 from hough_tui.ui.forms.edits import value_in
 from hough_tui.ui.forms.fields import FieldDescription, Kind, components, described, ordered, told_apart
 from hough_tui.ui.forms.labels import label_of, within
@@ -31,19 +33,27 @@ def columns_of(
     ----------
     elements : those that there are: they say which of several sizes their vectors have
     """
-    found: list[FieldDescription] = []
-    for kind in models:
-        model = next((element for element in elements if type(element) is kind), kind)
-        # What only some kinds of elements have stands before what follows it there, as in the declaration.
-        place = len(found)
-        own = told_apart(ordered(described(model, (), unit)), tuple(models))
-        for column in reversed(list(_opened(own))):
-            paths = [known.path for known in found]
+    return tuple(_told_apart(_of_kinds(tuple(models), (), unit, elements)))
+
+
+def _of_kinds(
+    kinds: tuple[type[BaseModel], ...], path: Path, unit: Unit | None, elements: Sequence[BaseModel]
+) -> list[FieldDescription]:
+    """Return the columns of what stands at a path in elements and may be of several kinds."""
+    columns: list[FieldDescription] = []
+    values = [value_in(element, path) for element in elements]
+    for kind in kinds:
+        model = next((value for value in values if type(value) is kind), kind)
+        # What only some kinds have stands before what follows it there, as in the declaration.
+        place = len(columns)
+        own = told_apart(ordered(described(model, path, unit)), kinds)
+        for column in reversed(list(_opened(own, unit, elements))):
+            paths = [other.path for other in columns]
             if column.path in paths:
                 place = paths.index(column.path)
             else:
-                found.insert(place, column)
-    return tuple(_told_apart(found))
+                columns.insert(place, column)
+    return columns
 
 
 def _told_apart(columns: Sequence[FieldDescription]) -> Iterator[FieldDescription]:
@@ -61,8 +71,16 @@ def _told_apart(columns: Sequence[FieldDescription]) -> Iterator[FieldDescriptio
 
 
 def has(element: BaseModel, column: FieldDescription) -> bool:
-    """Return whether an element has the field of a column: not every kind has every field."""
-    return column.path[0] in type(element).model_fields
+    """Return whether an element has the field of a column: not every kind has every field.
+
+    What a group has that is not there at all counts as had: to give it is to begin the group.
+    """
+    here: Any = element
+    for part in column.path:
+        if isinstance(here, BaseModel) and part not in type(here).model_fields:
+            return False
+        here = value_in(here, (part,))
+    return True
 
 
 def heading(label: str, unit: str, *, right: bool) -> Text:
@@ -93,11 +111,26 @@ def is_right(column: FieldDescription) -> bool:
     return column.kind in (Kind.NUMBER, Kind.WHOLE)
 
 
-def _opened(fields: Sequence[FieldDescription]) -> Iterator[FieldDescription]:
+def _label_within(group: FieldDescription, inner: FieldDescription) -> str:
+    """Return what a field of a group is called in a table: what the group is, by the group's name alone."""
+    if inner.path == (*group.path, discriminator(group.models)):
+        return group.label
+    if isinstance(inner.path[-1], int):
+        # A symbol, such as ax, needs no more.
+        return inner.label
+    return f"{group.label} {within(inner.label)}"
+
+
+def _opened(
+    fields: Sequence[FieldDescription], unit: Unit | None, elements: Sequence[BaseModel]
+) -> Iterator[FieldDescription]:
     for field in fields:
         if field.kind is Kind.GROUP:
-            for inner in _opened(field.fields):
-                yield replace(inner, label=f"{field.label} {within(inner.label)}")
+            inside: Iterable[FieldDescription] = _opened(field.fields, unit, elements)
+            if len(field.models) > 1:
+                inside = _of_kinds(field.models, field.path, unit, elements)
+            for inner in inside:
+                yield replace(inner, label=_label_within(field, inner))
         elif field.kind in (Kind.LIST, Kind.MAPPING) or field.is_constant:
             # Lists within lists have tables of their own, and one value need not be repeated.
             continue

@@ -151,6 +151,8 @@ def _start(field: FieldDescription) -> Any:
         case Kind.VECTOR:
             # Bounds must rise and a target must move: no two numbers are equal.
             return 1 if field.wanted.single else list(range(field.wanted.size or 1))
+        case Kind.VECTORS:
+            return [list(range(field.wanted.size or 1))]
         case Kind.CHOICE:
             return field.choices[0]
         case Kind.FLAG:

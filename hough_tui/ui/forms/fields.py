@@ -38,6 +38,8 @@ class Kind(enum.StrEnum):
     CHOICE = "choice"
     TEXT = "text"
     FLAG = "flag"
+    VECTORS = "vectors"
+    """Several vectors, such as places."""
     TEXTS = "texts"
     """Several texts, such as names."""
     MAPPING = "mapping"
@@ -222,6 +224,9 @@ def _of_kind(plain: FieldDescription, found: list[Alternative], value: Any) -> F
         return replace(plain, kind=Kind.FLAG)
     if any(typing.get_origin(kind) is dict for kind in kinds):
         return replace(plain, kind=Kind.MAPPING, wanted=Wanted(size=None))
+    sizes = [element.length for element in elements if element.elements and element.length is not None]
+    if sizes:
+        return replace(plain, kind=Kind.VECTORS, wanted=Wanted(size=sizes[0], others=tuple(sizes[1:])))
     if any(element.kind is str for element in elements):
         return replace(plain, kind=Kind.TEXTS)
     return _numeric(plain, others, words, value)

@@ -22,7 +22,7 @@ from hough_tui.ui.forms.cell_editor import CellEditor
 from hough_tui.ui.forms.cell_table import CellTable
 from hough_tui.ui.forms.columns import cell, columns_of, has, heading, inherited, is_right
 from hough_tui.ui.forms.controls import EXPLAIN, ExplanationWanted
-from hough_tui.ui.forms.edits import duplicate, edit_of, names_of, starter, value_in
+from hough_tui.ui.forms.edits import Edit, duplicate, edit_of, names_of, starter, value_in
 from hough_tui.ui.forms.fields import FieldDescription, Kind
 from hough_tui.ui.forms.labels import within
 from hough_tui.ui.forms.list_bar import ListBar
@@ -241,6 +241,10 @@ class ListTable(Widget):
         event.stop()
         self.action_explain()
 
+    def edit_of(self, element: BaseModel, base: Path, path: Path, value: Any) -> Edit:
+        """Return what to ask of the set where a cell of an element gets a value; see `edits.edit_of`."""
+        return edit_of(element, base, path, value, holder=self._holder, found=self.field.models)
+
     def _show(self) -> None:
         extra = self.worked_out()
         headings = [heading(one.label, one.unit, right=is_right(one)) for one in self._columns]
@@ -292,8 +296,7 @@ class ListTable(Widget):
     def _post(self, place: Coordinate, value: Any) -> None:
         base = (*self.field.path, place.row)
         path, element = (*base, *self._columns[place.column].path), self._elements[place.row]
-        edit = edit_of(element, base, path, value, holder=self._holder, found=self.field.models)
-        self.post_message(FieldEdited(*edit))
+        self.post_message(FieldEdited(*self.edit_of(element, base, path, value)))
 
     def _close(self, step: int = 0) -> None:
         editor, self._editor = self._editor, None

@@ -6,10 +6,13 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from pydantic import BaseModel
 
-from algorithms.parameters import Dimension
+from algorithms.parameters import Dimension, Path
 from hough_tui.reports.numerals import significant
+from hough_tui.ui.forms.columns import has
+from hough_tui.ui.forms.edits import Edit, data_of
 from hough_tui.ui.forms.fields import FieldDescription, unit_text
 from hough_tui.ui.forms.list_table import ListTable
 from scenarios.model import Scenario
@@ -21,11 +24,13 @@ PART = 0.25
 
 
 class TargetTable(ListTable):
-    """A row for each target; speed and heading (clockwise from north) are worked out."""
+    """A row for each target; its first speed and heading (clockwise from north) are worked out."""
 
     def is_of_use(self, column: FieldDescription) -> bool:
-        """Leave out what targets are to sensors of high resolution, where there is none."""
+        """Leave out what no motion has, and extents where no sensor resolves them."""
         scenario = self._holder
+        if column.path[0] == "motion":
+            return any(has(element, column) for element in self._elements)
         return column.path[0] != "extended" or not isinstance(scenario, Scenario) or scenario.is_resolved
 
     def worked_out(self) -> Sequence[tuple[str, str]]:
@@ -33,12 +38,38 @@ class TargetTable(ListTable):
 
     def worked_out_cells(self, element: BaseModel) -> Sequence[str]:
         assert isinstance(element, Target)
-        east, north = element.velocity[:2]
-        speed = significant(math.hypot(*element.velocity))
+        # As it begins: through waypoints it does not fly where its velocity points.
+        velocity = element.course(np.zeros(1))[1][0]
+        east, north = velocity[:2]
+        speed = significant(math.hypot(*velocity))
         if east == 0.0 and north == 0.0:
             # At rest, or straight up or down.
             return speed, ""
         return speed, f"{math.degrees(math.atan2(east, north)) % 360.0:.1f}"
+
+    def edit_of(self, element: BaseModel, base: Path, path: Path, value: Any) -> Edit:
+        """Return what to ask of the set; another motion begins as one that the target can have."""
+        if path[len(base) :] != ("motion", "kind"):
+            return super().edit_of(element, base, path, value)
+        assert isinstance(element, Target)
+        return path[:-1], {"kind": value, **self._started(element, value)}
+
+    def _started(self, target: Target, kind: str) -> dict[str, Any]:
+        """Return the fields with which a motion of a kind begins; the noise is that of the motion before."""
+        kept = data_of(target.motion)
+        start: dict[str, Any] = {"process_noise": kept["process_noise"]} if "process_noise" in kept else {}
+        if kind == "acceleration":
+            return {**start, "acceleration": [0.0] * len(target.position)}
+        if kind == "turn":
+            return {**start, "rate_deg": 1.0}
+        if kind == "waypoints":
+            # Straight ahead, so that the path stays what it is until the point is moved.
+            scenario = self._holder
+            assert isinstance(scenario, Scenario)
+            elapsed = 0.5 * (scenario.scans - 1) * scenario.interval or scenario.interval
+            ahead = zip(target.position, target.velocity, strict=True)
+            return {**start, "points": [[float(f"{place + speed * elapsed:.6g}") for place, speed in ahead]]}
+        return start
 
     def new_element(self) -> dict[str, Any]:
         """Return a target in the middle of the region, eastward bound, as fast as the last one that moves."""

@@ -20,6 +20,8 @@ def text_of(field: FieldDescription, value: Any) -> str:
         return YES if value else NO
     if isinstance(value, Mapping):
         return "; ".join(f"{name}: {numbers_text(numbers)}" for name, numbers in value.items())
+    if field.kind is Kind.VECTORS and isinstance(value, list | tuple):
+        return "; ".join(map(numbers_text, value))
     if isinstance(value, list | tuple):
         return ", ".join(text_of(field, element) for element in value)
     if isinstance(value, int | float):
@@ -35,6 +37,8 @@ def value_of(field: FieldDescription, text: str) -> Any | Unreadable:
     match field.kind:
         case Kind.NUMBER | Kind.WHOLE | Kind.VECTOR:
             return read(text, field.wanted)
+        case Kind.VECTORS:
+            return _vectors(field, text)
         case Kind.TEXTS:
             names = re.split(r"[,;\s]+", text.strip(" \t,;"))
             return [name for name in names if name] or (None if field.optional else [])
@@ -59,6 +63,12 @@ def shown(value: Any) -> str:
     if isinstance(value, float) and not isinstance(value, bool):
         return number_text(float(f"{value:.6g}"))
     return str(value)
+
+
+def _vectors(field: FieldDescription, text: str) -> list[Any] | Unreadable:
+    vectors = [read(part, field.wanted) for part in text.strip(" \t;").split(";")]
+    unreadable = next((vector for vector in vectors if isinstance(vector, Unreadable)), None)
+    return vectors if unreadable is None else unreadable
 
 
 def _mapping(field: FieldDescription, text: str) -> dict[str, list[float | int]] | Unreadable:

@@ -19,6 +19,7 @@ NAMES = {
     Kind.CHOICE: "a choice",
     Kind.TEXT: "text",
     Kind.FLAG: "yes or no",
+    Kind.VECTORS: "vectors, with semicolons between them: 40, 20; 60, 20",
     Kind.TEXTS: "names, with commas between them",
     Kind.MAPPING: "names with their values: scans: 5, 10, 15; rate: 20, 50",
 }

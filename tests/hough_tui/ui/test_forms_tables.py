@@ -10,7 +10,7 @@ from hough_tui.ui.screens.explanation import ExplanationScreen
 from tests.hough_tui.ui.test_forms_app import SCENARIO, FormApp, drive
 
 TARGETS, CLUTTER = (*SCENARIO, "targets"), (*SCENARIO, "clutter")
-X, Y, VX, VY, BIRTH, DEATH, SPREAD, SPEED = range(1, 9)
+X, Y, VX, VY, BIRTH, DEATH, SPREAD, MOTION, NOISE, SPEED = range(1, 11)
 """The columns of the table of targets, after the name."""
 KIND, OVER, RATE, COUNT, PER, REGION_X, REGION_Y, REGION_Z = range(8)
 """The columns of the table of clutter."""
@@ -47,7 +47,9 @@ def rows(table: ListTable) -> list[list[str]]:
 def test_targets_are_shown_with_speed_and_heading():
     async def journey(app, pilot):
         table = app.form.table(TARGETS)
-        assert rows(table)[0] == ["rising", "40", "20", "0.3", "0.18", "0", "", "0", "0.350", "59.0"]
+        *declared, motion, noise, speed, heading = rows(table)[0]
+        assert declared == ["rising", "40", "20", "0.3", "0.18", "0", "", "0"]
+        assert (motion, noise, speed, heading) == ("constant-velocity", "0", "0.350", "59.0")
         assert rows(table)[1][-1] == "121.0"
 
     assert asked(drive(SCENARIO, journey, (100, 50))) == []
@@ -239,6 +241,43 @@ def test_clutter_becomes_of_another_kind_in_its_cell():
         await pilot.press("enter")
         await pilot.pause()
         assert message(table) == "! this one has no rate"
+
+    drive(SCENARIO, journey, (100, 50))
+
+
+def test_a_target_moves_in_another_way_in_its_cell():
+    async def journey(app, pilot):
+        async def next_motion():
+            await at(app, pilot, TARGETS, 0, MOTION)
+            await pilot.press("enter")
+            await pilot.pause()
+            return app.workspace.value((*TARGETS, 0, "motion"))
+
+        table = await at(app, pilot, TARGETS, 0, NOISE)
+        await edit(pilot, "0.001", "enter")
+        motion = await next_motion()
+        assert (motion.kind, motion.acceleration, motion.process_noise) == ("acceleration", (0.0, 0.0), 0.001)
+        headings = [column.label.plain for column in table.query_one(CellTable).ordered_columns]
+        units = "\n[km/s²]"
+        own = [f"Motion process noise{units}", f"ax{units}", f"ay{units}"]
+        assert headings[MOTION : MOTION + 4] == ["Motion", *own]
+        await at(app, pilot, TARGETS, 0, NOISE + 2)
+        await edit(pilot, "0.002", "enter")
+        assert app.workspace.value((*TARGETS, 0, "motion", "acceleration")) == (0.0, 0.002)
+        await at(app, pilot, TARGETS, 1, NOISE + 2)
+        await pilot.press("enter")
+        await pilot.pause()
+        assert message(table) == "! this one has no ay"
+        assert (await next_motion()).rate_deg == 1.0
+        assert (await next_motion()).points == [(48.4, 25.04)]
+        await at(app, pilot, TARGETS, 0, NOISE + 1)
+        await edit(pilot, "60, 20; 60 40", "enter")
+        assert app.workspace.value((*TARGETS, 0, "motion", "points")) == [(60.0, 20.0), (60.0, 40.0)]
+        assert rows(table)[0][NOISE + 1] == "60, 20; 60, 40"
+        # The first leg leads east, wherever the velocity points.
+        assert rows(table)[0][-1] == "90.0"
+        assert (await next_motion()).kind == "constant-velocity"
+        assert app.workspace.value((*TARGETS, 0, "motion", "process_noise")) == 0.001
 
     drive(SCENARIO, journey, (100, 50))
 
