@@ -18,6 +18,7 @@ from scenarios.entries import entry_model
 from scenarios.experiments import InitiationExperiment, MatchCriterion
 from scenarios.files.set_files import bundled_paths, load_set
 from scenarios.model import Scenario, ScenarioSet
+from scenarios.motion import Waypoints
 from scenarios.sensors import CartesianSensor
 from scenarios.targets import Target
 
@@ -34,7 +35,16 @@ MODELS = [
     *(entry_model(known) for known in initiators().values()),
     *(known.parameters for known in initiators().values()),
 ]
-UNITS = {"length": "nmi", "speed": "nmi/s", "angle": "°", "time": "s", "count": "", "fraction": ""}
+UNITS = {
+    "length": "nmi",
+    "speed": "nmi/s",
+    "acceleration": "nmi/s²",
+    "angle": "°",
+    "turn-rate": "°/s",
+    "time": "s",
+    "count": "",
+    "fraction": "",
+}
 
 
 @pytest.fixture
@@ -91,6 +101,7 @@ def test_every_value_of_a_set_is_shown_as_text_that_reads_as_it(name):
         (GridParameters, ("rho_step",), Kind.NUMBER),
         (GridParameters, ("rho_bins",), Kind.WHOLE),
         (GridParameters, ("origin",), Kind.VECTOR),
+        (Waypoints, ("points",), Kind.VECTORS),
         (InitiationExperiment, ("control",), Kind.FLAG),
         (InitiationExperiment, ("scenarios",), Kind.TEXTS),
         (InitiationExperiment, ("sweep",), Kind.MAPPING),
@@ -115,6 +126,15 @@ def test_labels_units_and_bounds():
 def test_a_scenario_says_its_own_unit(given):
     metric = given.scenarios[0].model_copy(update={"unit": Unit.METRE})
     assert field_of(metric, "sensor", "sigma").unit == "m"
+
+
+def test_vectors_are_typed_with_semicolons_between_them():
+    points = field_of(Waypoints, "points")
+    assert value_of(points, "60 20; 60, 40;") == [(60, 20), (60, 40)]
+    assert value_of(points, "1 2 3") == [(1, 2, 3)]
+    assert value_of(points, "1 2; 3").message == "'3' is 1 number; it must be 2 or 3 numbers, as in '40, 20'"
+    assert isinstance(value_of(points, ""), Unreadable)
+    assert text_of(points, [(60.0, 20.5), (1.0, 2.0)]) == "60, 20.5; 1, 2"
 
 
 def test_what_a_plug_in_may_declare():
@@ -148,6 +168,12 @@ def test_columns_open_groups_and_named_vectors():
         "Birth",
         "Death",
         "Spread [km]",
+        "Motion",
+        "Motion process noise [km/s²]",
+        "ax [km/s²]",
+        "ay [km/s²]",
+        "Motion rate [°/s]",
+        "Motion points [km]",
         "Extended points",
         "Extended range spread [km]",
         "Extended doppler spread [km/s]",
