@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,6 +79,10 @@ class Scores:
         score (of equals, the nearest in ρ), signed, across the seam at 0 and π; NaN where none
     mixed : int64 (trials,), tracks that match a target and hold plots of more than one origin,
         such as clutter; −1 where the tracks' plots are not known
+    best : int64 (trials, targets), the row of the matching track with the highest score, as for the errors;
+        −1 where none
+    confirmed : int64 (trials, targets), the first scan with which a matching track was confirmed; −1 where
+        none, or where tracks do not say it
     """
 
     found: NDArray[np.bool_]
@@ -87,80 +92,115 @@ class Scores:
     theta_error: NDArray[np.float64]
     rho_error: NDArray[np.float64]
     mixed: NDArray[np.int64]
+    best: NDArray[np.int64]
+    confirmed: NDArray[np.int64]
+
+
+class Candidates(NamedTuple):
+    """Tracks of a chunk as the kernel takes them.
+
+    Attributes
+    ----------
+    offsets : int64 (trials + 1,), where each trial's tracks begin
+    theta, rho, score : float64 (m,)
+    confirmed_scan : int64 (m,), −1 where it is open
+    shared : int64 (m, targets), plots of each track that came from each target; of length 0 where
+        the criterion does not ask for plots
+    """
+
+    offsets: NDArray[np.int64]
+    theta: NDArray[np.float64]
+    rho: NDArray[np.float64]
+    score: NDArray[np.float64]
+    confirmed_scan: NDArray[np.int64]
+    shared: NDArray[np.int64]
+
+
+class TrueLines(NamedTuple):
+    """The lines of the targets as the kernel takes them: see `Truth`."""
+
+    theta: NDArray[np.float64]
+    rho: NDArray[np.float64]
+    middle: NDArray[np.float64]
+
+
+class Bounds(NamedTuple):
+    """A criterion as the kernel takes it: see `Criterion`; NaN and 0 for bounds that it does not have."""
+
+    rho: float
+    theta: float
+    plots: int
+    mid_track: bool
+    nearest: bool
 
 
 @kernel
-def _matches_line(angle, distance, plain, tolerance_rho, tolerance_theta):  # type: ignore[no-untyped-def]
-    if np.isnan(tolerance_theta):
-        return abs(plain) <= tolerance_rho
-    return abs(angle) <= tolerance_theta and abs(distance) <= tolerance_rho
-
-
-@kernel
-def _line_differences(theta, rho, true_theta, true_rho, x, y, mid_track):  # type: ignore[no-untyped-def]
-    """Return the signed differences of two lines in θ and in ρ, ρ about (x, y) where that is asked for."""
-    angle, distance = separation(theta, rho, true_theta, true_rho)
+def _differences(theta, rho, lines, trial, target, mid_track):  # type: ignore[no-untyped-def]
+    """Return the signed differences of a line from a target's in θ and ρ, ρ about its middle if asked for."""
+    angle, distance = separation(theta, rho, lines.theta[trial, target], lines.rho[trial, target])
     if mid_track:
+        x, y = lines.middle[trial, target, 0], lines.middle[trial, target, 1]
         distance = rho - x * np.cos(theta) - y * np.sin(theta)
     return angle, distance
 
 
 @kernel
-def _nearest(theta, rho, true_theta, true_rho, middle, tolerance_rho, tolerance_theta, mid_track):  # type: ignore[no-untyped-def]
-    """Return the nearest of the targets within both tolerances, −1 where there is none."""
+def _nearest(theta, rho, lines, trial, bounds):  # type: ignore[no-untyped-def]
+    """Return the nearest of the targets within both bounds, −1 where there is none."""
     best, least = -1, np.inf
-    for target in range(len(true_theta)):
-        angle, distance = _line_differences(
-            theta, rho, true_theta[target], true_rho[target], middle[target, 0], middle[target, 1], mid_track
-        )
-        if abs(angle) <= tolerance_theta and abs(distance) <= tolerance_rho:
-            apart = (angle / tolerance_theta) ** 2 + (distance / tolerance_rho) ** 2
+    for target in range(lines.theta.shape[1]):
+        angle, distance = _differences(theta, rho, lines, trial, target, bounds.mid_track)
+        if abs(angle) <= bounds.theta and abs(distance) <= bounds.rho:
+            apart = (angle / bounds.theta) ** 2 + (distance / bounds.rho) ** 2
             if apart < least:
                 best, least = target, apart
     return best
 
 
 @kernel
-def _score(  # type: ignore[no-untyped-def]
-    offsets, theta, rho, rank, shared, true_theta, true_rho, middle, tolerance_rho, tolerance_theta,
-    least_plots, mid_track, nearest,
-):  # fmt: skip
-    trials, targets = true_theta.shape
+def _matches_line(angle, distance, plain, bounds):  # type: ignore[no-untyped-def]
+    if np.isnan(bounds.theta):
+        return abs(plain) <= bounds.rho
+    return abs(angle) <= bounds.theta and abs(distance) <= bounds.rho
+
+
+@kernel
+def _score(tracks, lines, bounds):  # type: ignore[no-untyped-def]
+    trials, targets = lines.theta.shape
     found = np.zeros((trials, targets), np.bool_)
     false, duplicates = np.zeros(trials, np.int64), np.zeros(trials, np.int64)
-    state = np.full(len(theta), FALSE, np.int8)
-    theta_error = np.full((trials, targets), np.nan)
-    rho_error = np.full((trials, targets), np.nan)
-    best = np.empty(targets, np.float64)
+    state = np.full(len(tracks.theta), FALSE, np.int8)
+    theta_error, rho_error = np.full((trials, targets), np.nan), np.full((trials, targets), np.nan)
+    best = np.full((trials, targets), -1, np.int64)
+    confirmed = np.full((trials, targets), -1, np.int64)
     for trial in range(trials):
-        best[:] = -np.inf
-        for track in range(offsets[trial], offsets[trial + 1]):
+        for track in range(tracks.offsets[trial], tracks.offsets[trial + 1]):
+            theta, rho, scan = tracks.theta[track], tracks.rho[track], tracks.confirmed_scan[track]
             matches, is_new, only = False, False, -1
-            if nearest:
-                only = _nearest(
-                    theta[track], rho[track], true_theta[trial], true_rho[trial], middle[trial],
-                    tolerance_rho, tolerance_theta, mid_track,
-                )  # fmt: skip
+            if bounds.nearest:
+                only = _nearest(theta, rho, lines, trial, bounds)
             for target in range(targets):
-                angle, distance = _line_differences(
-                    theta[track], rho[track], true_theta[trial, target], true_rho[trial, target],
-                    middle[trial, target, 0], middle[trial, target, 1], mid_track,
-                )  # fmt: skip
-                if least_plots > 0:
-                    matched = shared[track, target] >= least_plots
-                elif nearest:
+                angle, distance = _differences(theta, rho, lines, trial, target, bounds.mid_track)
+                if bounds.plots > 0:
+                    matched = tracks.shared[track, target] >= bounds.plots
+                elif bounds.nearest:
                     matched = target == only
                 else:
-                    plain = rho[track] - true_rho[trial, target]
-                    matched = _matches_line(angle, distance, plain, tolerance_rho, tolerance_theta)
+                    matched = _matches_line(angle, distance, rho - lines.rho[trial, target], bounds)
                 if not matched:
                     continue
                 matches = True
                 is_new = is_new or not found[trial, target]
                 found[trial, target] = True
-                nearer = rank[track] == best[target] and abs(distance) < abs(rho_error[trial, target])
-                if rank[track] > best[target] or nearer:
-                    best[target] = rank[track]
+                if scan >= 0 and (confirmed[trial, target] < 0 or scan < confirmed[trial, target]):
+                    confirmed[trial, target] = scan
+                before = best[trial, target]
+                score, of_best = tracks.score[track], -np.inf
+                if before >= 0:
+                    of_best = tracks.score[before]
+                nearer = score == of_best and abs(distance) < abs(rho_error[trial, target])
+                if score > of_best or nearer:
+                    best[trial, target] = track
                     theta_error[trial, target] = angle
                     rho_error[trial, target] = distance
             if not matches:
@@ -170,7 +210,7 @@ def _score(  # type: ignore[no-untyped-def]
             else:
                 state[track] = DUPLICATE
                 duplicates[trial] += 1
-    return found, false, duplicates, state, theta_error, rho_error
+    return found, false, duplicates, state, theta_error, rho_error, best, confirmed
 
 
 @kernel
@@ -209,19 +249,25 @@ def score(tracks: TrackChunk, truth: Truth, plot_offsets: NDArray[np.int64], cri
     plot_offsets : int64 (trials + 1,), where each trial's plots begin
     criterion : when a track matches a target
     """
-    least = 0 if criterion.plots is None else criterion.plots
-    if least:
+    shared = np.zeros((0, 0), np.int64)
+    if criterion.plots is not None:
         assert tracks.plots is not None
         shared = _shared(tracks.plots, tracks.offsets, plot_offsets, truth.origin, truth.targets)
-    else:
-        shared = np.zeros((0, 0), np.int64)
-    found, false, duplicates, state, theta_error, rho_error = _score(
-        tracks.offsets, tracks.theta, tracks.rho, tracks.score, shared, truth.theta, truth.rho, truth.middle,
-        np.nan if criterion.rho is None else criterion.rho,
-        np.nan if criterion.theta is None else criterion.theta,
-        least, criterion.mid_track, criterion.nearest,
-    )  # fmt: skip
+    confirmed_scan = tracks.confirmed_scan
+    if confirmed_scan is None:
+        confirmed_scan = np.full(len(tracks.theta), -1, np.int64)
+    found, false, duplicates, state, theta_error, rho_error, best, confirmed = _score(
+        Candidates(tracks.offsets, tracks.theta, tracks.rho, tracks.score, confirmed_scan, shared),
+        TrueLines(truth.theta, truth.rho, truth.middle),
+        Bounds(
+            np.nan if criterion.rho is None else criterion.rho,
+            np.nan if criterion.theta is None else criterion.theta,
+            criterion.plots or 0,
+            criterion.mid_track,
+            criterion.nearest,
+        ),
+    )
     mixed = np.full(len(tracks.counts), -1, np.int64)
     if tracks.plots is not None and tracks.plots.shape[1] > 0:
         mixed = _mixed(tracks.plots, state, tracks.offsets, plot_offsets, truth.origin)
-    return Scores(found, false, duplicates, state, theta_error, rho_error, mixed)
+    return Scores(found, false, duplicates, state, theta_error, rho_error, mixed, best, confirmed)
