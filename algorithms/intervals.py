@@ -73,6 +73,20 @@ def normal_interval(values: ArrayLike, z: float = Z95) -> tuple[float, float]:
     return mean - half, mean + half
 
 
+def chi_square_quantile(share: float, freedom: float) -> float:
+    """Return the value that so great a share of a χ² distribution lies below.
+
+    Parameters
+    ----------
+    share : in (0, 1)
+    freedom : its degrees of freedom, > 0
+    """
+    # Imported where it is needed: it takes longer than many a command.
+    from scipy.special import chdtri
+
+    return float(chdtri(freedom, 1.0 - share))
+
+
 def count_interval(values: ArrayLike, z: float = Z95) -> tuple[float, float]:
     """Return the interval of the mean of per-trial counts.
 

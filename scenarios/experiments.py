@@ -8,7 +8,9 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
+from algorithms.context import Context
 from algorithms.parameters import (
+    Auto,
     Count,
     Declared,
     Dimension,
@@ -23,6 +25,8 @@ from algorithms.parameters import (
 from algorithms.scoring.matching import Criterion
 
 MOST_TRIALS = 10_000_000
+CUTOFF_BY_NOISE = 10.0
+"""The cutoff of GOSPA unless it is chosen, as a multiple of the greatest standard deviation of a plot."""
 LARGEST_SEED = 2**64 - 1
 Seed = Annotated[int, Field(strict=True, ge=0, le=LARGEST_SEED)]
 
@@ -133,6 +137,29 @@ class InitiationExperiment(Experiment):
         help="whether the same draws without the targets are scored too, to show what chance alone gives",
     )
     criterion: MatchCriterion = parameter(help="when a track matches a target")
+    kinematics: Literal["auto", "always", "never"] = parameter(
+        "auto",
+        help="whether the states of tracks are judged too (position_rmse, nees, gospa and so on), which "
+        "needs their plots",
+        auto="where tracks are matched by plots, which are at hand then",
+    )
+    gospa_cutoff: Positive | Auto = parameter(
+        "auto",
+        dimension=Dimension.LENGTH,
+        help="distance from which on GOSPA takes a track and a target for a false track and a missed target",
+        auto="ten times the noise of the plots",
+    )
+
+    @property
+    def judges_states(self) -> bool:
+        """Whether the states of tracks are judged."""
+        return self.kinematics == "always" or (self.kinematics == "auto" and self.criterion.plots is not None)
+
+    def gospa_cutoff_on(self, context: Context) -> float | None:
+        """Return the cutoff of GOSPA on a scenario; None where it hangs on a noise that is none."""
+        if self.gospa_cutoff != "auto":
+            return self.gospa_cutoff
+        return None if context.noise is None else CUTOFF_BY_NOISE * context.noise
 
     @property
     def parts(self) -> tuple[str, ...]:

@@ -79,8 +79,8 @@ class Scores:
         score (of equals, the nearest in ρ), signed, across the seam at 0 and π; NaN where none
     mixed : int64 (trials,), tracks that match a target and hold plots of more than one origin,
         such as clutter; −1 where the tracks' plots are not known
-    best : int64 (trials, targets), the row of the matching track with the highest score, as for the errors;
-        −1 where none
+    best : int64 (trials, targets), the row of the matching track with the highest score, of equals the
+        first, which truth has no part in choosing; −1 where none
     confirmed : int64 (trials, targets), the first scan with which a matching track was confirmed; −1 where
         none, or where tracks do not say it
     """
@@ -199,8 +199,9 @@ def _score(tracks, lines, bounds):  # type: ignore[no-untyped-def]
                 if before >= 0:
                     of_best = tracks.score[before]
                 nearer = score == of_best and abs(distance) < abs(rho_error[trial, target])
-                if score > of_best or nearer:
+                if score > of_best:
                     best[trial, target] = track
+                if score > of_best or nearer:
                     theta_error[trial, target] = angle
                     rho_error[trial, target] = distance
             if not matches:

@@ -11,8 +11,8 @@ from hough_tui.experiments.cases import AnyCell
 from hough_tui.experiments.columns.schema import Columns
 from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.formats import FORMAT
+from hough_tui.experiments.metrics.kinds import kind_of
 from hough_tui.experiments.metrics.metric import AnySample, Sample
-from hough_tui.experiments.metrics.registry import kind_of
 from hough_tui.experiments.plan import plan_run
 from hough_tui.experiments.rows import row_of
 from hough_tui.experiments.stores.folder import Run

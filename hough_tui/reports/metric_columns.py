@@ -7,7 +7,8 @@ from typing import Any
 
 from algorithms.errors import RequestError
 from algorithms.parameters import unknown
-from hough_tui.experiments.metrics.registry import METRICS, AnyMetric, kind_of
+from hough_tui.experiments.metrics.kinds import kind_of
+from hough_tui.experiments.metrics.registry import METRICS, AnyMetric
 from hough_tui.reports.layout import Column, broken
 from hough_tui.reports.numerals import Pair, aligned, durations, intervals, number, pair, percent, significant
 

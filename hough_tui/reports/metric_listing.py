@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from hough_tui.experiments.metrics.registry import KINDS, METRICS, AnyMetric
+from hough_tui.experiments.metrics.kinds import KINDS
+from hough_tui.experiments.metrics.registry import METRICS, AnyMetric
 from hough_tui.reports.layout import Column, Sheet, repeats
 
 SHOWN = {True: "yes", False: ""}

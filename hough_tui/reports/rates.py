@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hough_tui.experiments.metrics.clustering import CLUSTERING
-from hough_tui.experiments.metrics.initiation import INITIATION
-from hough_tui.experiments.metrics.registry import kind_of
+from hough_tui.experiments.metrics.kinds import CLUSTERING, INITIATION, kind_of
 from hough_tui.reports import clustering_notes, initiation_notes
 from hough_tui.reports.layout import Column, Sheet
 from hough_tui.reports.metric_columns import metric_columns

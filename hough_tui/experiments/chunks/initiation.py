@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from algorithms.initiators.base import ChunkInitiator
 from algorithms.plots import PlotChunk
+from algorithms.scoring.gospa import gospa
+from algorithms.scoring.kinematics import kinematic_errors
+from algorithms.scoring.latency import scans_to_initiate
 from algorithms.scoring.matching import Scores, score
 from algorithms.tracks import TrackChunk
 from hough_tui.experiments.cases import Cell, CellPart, Row, SharedDraws, SharedRun
@@ -78,7 +78,18 @@ class InitiationCell(Cell[Scenario, InitiatorEntry]):
 
     def settings(self) -> Row:
         """Return the end of a row: by which settings it ran."""
-        return {"criterion": self.criterion.document, **Cell.settings(self)}
+        return {
+            "criterion": self.criterion.document,
+            "gospa_cutoff": self.gospa_cutoff,
+            **Cell.settings(self),
+        }
+
+    @property
+    def gospa_cutoff(self) -> float | None:
+        """Cutoff of GOSPA; None where states are not judged, or where it hangs on a noise that is none."""
+        if not self.experiment.judges_states:
+            return None
+        return self.experiment.gospa_cutoff_on(self.scenario.context)
 
     @property
     def bytes_a_trial(self) -> int:
@@ -125,24 +136,34 @@ class ScenarioDraws(SharedDraws[InitiationCell, PlotSource]):
         for run in self.runs:
             stage = run.first.clustering
             drawn, drawing = chunk.plots(stage)
-            tracks, finding = self._tracks(run, drawn.chunk, run_in_process)
+            states = any(cell.experiment.judges_states for cell in run.cells.values())
+            tracks, finding = self._tracks(run, drawn.chunk, run_in_process, states=states)
             has_control = any(cell.has_control for cell in run.cells.values())
             if has_control:
                 control = chunk.control(stage)
-                control_tracks, _ = self._tracks(run, control.chunk, run_in_process)
+                control_tracks, _ = self._tracks(run, control.chunk, run_in_process, states=False)
             for index, cell in run.cells.items():
                 began = time.thread_time()
-                scores = scores_of(cell, tracks, drawn)
+                columns = scored(cell, tracks, drawn)
                 seconds = drawing + finding + time.thread_time() - began
-                control_found = np.zeros((trials, 0), np.bool_)
                 if has_control and cell.has_control:
-                    control_found = scores_of(cell, control_tracks, control).found
-                yield CellPart(index, columns_of(first, tracks, scores, control_found), seconds)
+                    columns["control_found"] = scores_of(cell, control_tracks, control).found
+                yield CellPart(index, TrialColumns.of(first, trials, **columns), seconds)
 
     def _tracks(
-        self, run: SharedRun[InitiationCell], chunk: PlotChunk, run_in_process: Callable[..., Any]
+        self,
+        run: SharedRun[InitiationCell],
+        chunk: PlotChunk,
+        run_in_process: Callable[..., Any],
+        *,
+        states: bool,
     ) -> tuple[TrackChunk, float]:
-        """Return the tracks, with their plots where a criterion asks for them, and the seconds."""
+        """Return the tracks, with their plots where a criterion asks for them, and the seconds.
+
+        Parameters
+        ----------
+        states : whether their states are judged
+        """
         algorithm, parameters = run.first.entry.algorithm, run.first.parameters
         context = self.scenario.context
         if not isinstance(algorithm, ChunkInitiator):
@@ -152,7 +173,7 @@ class ScenarioDraws(SharedDraws[InitiationCell, PlotSource]):
             return timed
         began = time.thread_time()
         plots = any(cell.criterion.plots is not None for cell in run.cells.values())
-        tracks = algorithm.tracks_of_chunk(chunk, context, parameters, plots=plots, states=False)
+        tracks = algorithm.tracks_of_chunk(chunk, context, parameters, plots=plots, states=states)
         return tracks, time.thread_time() - began
 
 
@@ -161,21 +182,34 @@ def scores_of(cell: InitiationCell, tracks: TrackChunk, drawn: Draw) -> Scores:
     return score(tracks, truth(cell.scenario, drawn), drawn.chunk.offsets, cell.criterion.value)
 
 
-def columns_of(
-    first: int, tracks: TrackChunk, scores: Scores, control_found: NDArray[np.bool_]
-) -> TrialColumns:
-    """Return the columns of consecutive trials, from their scored tracks."""
-    return TrialColumns.of(
-        first,
-        len(tracks.counts),
-        found=scores.found,
-        tracks=tracks.counts,
-        false=scores.false,
-        duplicates=scores.duplicates,
-        theta_error=scores.theta_error,
-        rho_error=scores.rho_error,
-        votes_outside=tracks.votes_outside,
-        control_found=control_found,
-        mixed=scores.mixed,
-        effort=tracks.effort,
-    )
+def scored(cell: InitiationCell, tracks: TrackChunk, drawn: Draw) -> dict[str, Any]:
+    """Return the columns of trials, from their tracks."""
+    scores = scores_of(cell, tracks, drawn)
+    columns = {
+        "found": scores.found,
+        "tracks": tracks.counts,
+        "false": scores.false,
+        "duplicates": scores.duplicates,
+        "theta_error": scores.theta_error,
+        "rho_error": scores.rho_error,
+        "votes_outside": tracks.votes_outside,
+        "mixed": scores.mixed,
+        "scans_to_initiate": scans_to_initiate(scores.confirmed, drawn.states.present),
+        "effort": tracks.effort,
+    }
+    if cell.experiment.judges_states and tracks.states is not None:
+        errors = kinematic_errors(scores.best, tracks.states, drawn.states)
+        columns |= {
+            "position_error": errors.position,
+            "velocity_error": errors.velocity,
+            "cross_track_error": errors.cross_track,
+            "nees": errors.nees,
+        }
+        if cell.gospa_cutoff is not None:
+            parts = gospa(tracks.offsets, tracks.states, drawn.states, cell.gospa_cutoff)
+            columns |= {
+                "gospa_localisation": parts.localisation,
+                "gospa_missed": parts.missed,
+                "gospa_false": parts.false,
+            }
+    return columns

@@ -83,15 +83,30 @@ class Columns(ABC):
 
     @classmethod
     def of(cls, first: int, trials: int, **values: Any) -> Self:
-        """Return the columns of consecutive trials from `first` on, each value cast to its declared type."""
-        columns: dict[str, Any] = {"trial": np.arange(first, first + trials, dtype=np.int32)}
-        for name, column in cls.schema().items():
+        """Return the columns of consecutive trials from `first` on.
+
+        Parameters
+        ----------
+        first, trials : which trials
+        values : columns by name, cast to their declared types; those that are not there hold their fill
+        """
+        schema = cls.schema()
+        arrays = {
+            name: np.asarray(values[name], column.dtype)
+            for name, column in schema.items()
+            if name in values and not column.is_family
+        }
+        sizes = {
+            column.axis: arrays[name].shape[1]
+            for name, column in schema.items()
+            if name in arrays and column.axis is not None
+        }
+        columns = {name: column.empty(trials, sizes) for name, column in schema.items()} | arrays
+        for name, column in schema.items():
             if column.is_family:
                 named = values.get(name, {})
                 columns[name] = {key: np.asarray(one, column.dtype) for key, one in named.items()}
-            elif name in values:
-                columns[name] = np.asarray(values[name], column.dtype)
-        return cls(**columns)
+        return cls(**{**columns, "trial": np.arange(first, first + trials, dtype=np.int32)})
 
     @classmethod
     def read(cls, arrays: Mapping[str, NDArray[Any]], trials: int) -> Self:

@@ -6,15 +6,13 @@ from typing import TYPE_CHECKING
 
 from hough_tui.experiments.columns.clustering import ClusterColumns
 from hough_tui.experiments.metrics.estimators import Mean, MeanCount, RootMeanSquare, Share, Total
-from hough_tui.experiments.metrics.metric import Kind, Metric, Sample
+from hough_tui.experiments.metrics.kinds import CLUSTERING
+from hough_tui.experiments.metrics.metric import Metric, Sample
 
 if TYPE_CHECKING:
     from hough_tui.experiments.chunks.clustering import ClusteringCell
 
     ClusterSample = Sample[ClusteringCell, ClusterColumns]
-
-CLUSTERING = Kind("scene", ClusterColumns, "count_exact_rate")
-"""Experiments of clusterings on scenes."""
 
 METRICS: tuple[Metric[ClusterSample], ...] = (
     Metric(

@@ -6,12 +6,19 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.intervals import Z95, count_interval, mean_interval, normal_interval, wilson
+from algorithms.intervals import (
+    Z95,
+    chi_square_quantile,
+    count_interval,
+    mean_interval,
+    normal_interval,
+    wilson,
+)
 
 Array = NDArray[np.float64]
 Interval = tuple[float, float]
@@ -124,6 +131,73 @@ class RootMeanSquare(Estimator):
         if interval is not None:
             interval = math.sqrt(max(0.0, interval[0])), math.sqrt(interval[1])
         return Estimate(math.sqrt(mean), interval, trials)
+
+
+class Squares(NamedTuple):
+    """Normalised squares, each of which has a χ² distribution where what it is made of is right.
+
+    Attributes
+    ----------
+    values : float64 (trials, targets), NaN where there is none
+    components : how many components each is made of, the degrees of freedom of the distribution
+    """
+
+    values: Array
+    components: int
+
+
+@dataclass(frozen=True, slots=True)
+class MeanSquare(Estimator):
+    """Mean of normalised squares, with the interval by which their sum is χ² but for its scale.
+
+    It holds their number of components exactly where the sum lies within the bounds of the test that asks
+    whether they are what they should be.
+    """
+
+    def estimate(self, values: Squares) -> Estimate:
+        """Return the mean."""
+        finite = values.values[np.isfinite(values.values)]
+        if not len(finite):
+            return NOTHING
+        total, freedom = float(finite.sum()), len(finite) * values.components
+        ends = chi_square_quantile(0.975, freedom), chi_square_quantile(0.025, freedom)
+        mean = total / len(finite)
+        interval = mean * freedom / ends[0], mean * freedom / ends[1]
+        return Estimate(mean, interval, int(np.isfinite(values.values).any(axis=1).sum()))
+
+    def per_trial(self, values: Squares) -> Array:
+        """Return the mean over the targets of each trial."""
+        return mean_over_targets(values.values)
+
+
+@dataclass(frozen=True, slots=True)
+class Quantile(Estimator):
+    """Quantile over all trials and targets: the least value that the share reaches.
+
+    Attributes
+    ----------
+    share : of the values that are no greater
+    """
+
+    share: float
+
+    def estimate(self, values: Any) -> Estimate:
+        """Return the quantile; its interval ends at values whose ranks chance leaves open."""
+        values = np.asarray(values, np.float64)
+        ordered = np.sort(values[np.isfinite(values)])
+        count = len(ordered)
+        if not count:
+            return NOTHING
+        trials = int(np.isfinite(values).reshape(len(values), -1).any(axis=1).sum())
+        # Targets of a trial may go together: ranks are as uncertain as those of so many trials.
+        reach = Z95 * math.sqrt(self.share * (1.0 - self.share) / trials)
+        ends = [self._at(ordered, self.share - reach), self._at(ordered, self.share + reach)]
+        return Estimate(self._at(ordered, self.share), (ends[0], ends[1]), trials)
+
+    @staticmethod
+    def _at(ordered: Array, share: float) -> float:
+        rank = math.ceil(share * len(ordered) - 1e-9) - 1
+        return float(ordered[min(max(rank, 0), len(ordered) - 1)])
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,20 +15,17 @@ from hough_tui.experiments.metrics.estimators import (
     MeanByTarget,
     MeanCount,
     PooledShare,
-    RootMeanSquare,
+    Quantile,
     Share,
     Total,
-    mean_over_targets,
 )
-from hough_tui.experiments.metrics.metric import Kind, Metric, Sample
+from hough_tui.experiments.metrics.kinds import INITIATION
+from hough_tui.experiments.metrics.metric import Metric, Sample
 
 if TYPE_CHECKING:
     from hough_tui.experiments.chunks.initiation import InitiationCell
 
     TrackSample = Sample[InitiationCell, TrialColumns]
-
-INITIATION = Kind("scenario", TrialColumns, "success_rate")
-"""Experiments of initiators on scenarios."""
 
 
 def _share_of_targets(found: NDArray[np.bool_]) -> Array:
@@ -52,9 +49,9 @@ def _pure_and_matching(sample: TrackSample) -> Array:
     return counts
 
 
-def _squares(errors: NDArray[np.float32]) -> Array:
-    squares: Array = errors.astype(np.float64) ** 2
-    return squares
+def _scans_to_initiate(sample: TrackSample) -> Array:
+    scans = sample.columns.scans_to_initiate
+    return np.where(scans > 0, scans, np.nan)
 
 
 METRICS: tuple[Metric[TrackSample], ...] = (
@@ -142,44 +139,26 @@ METRICS: tuple[Metric[TrackSample], ...] = (
         rank=60,
     ),
     Metric(
-        key="theta_rmse_deg",
+        key="scans_to_initiate",
         kind=INITIATION,
-        words="θ RMSE",
-        definition="Root of the mean squared error in θ of the matching track of the highest score, over all "
-        "found targets.",
-        values=lambda sample: np.degrees(sample.columns.theta_error.astype(np.float64)) ** 2,
-        estimator=RootMeanSquare(),
-        unit="°",
-        rank=50,
+        words="scans to initiate",
+        definition="Number of scans from a target's first to the one in which a track on it is confirmed, "
+        "the mean over all found targets.",
+        values=_scans_to_initiate,
+        estimator=Mean(least=1.0),
+        heading="initiated\nscans",
+        unit="scans",
+        rank=58,
     ),
     Metric(
-        key="rho_rmse",
+        key="scans_to_initiate_p90",
         kind=INITIATION,
-        words="ρ RMSE",
-        definition="Root of the mean squared error in ρ of the same tracks.",
-        values=lambda sample: _squares(sample.columns.rho_error),
-        estimator=RootMeanSquare(),
-        unit="{length}",
-        rank=60,
-    ),
-    Metric(
-        key="theta_mse",
-        kind=INITIATION,
-        words="θ MSE",
-        definition="Mean squared error in θ over the found targets of a trial; the mean over trials.",
-        values=lambda sample: mean_over_targets(_squares(sample.columns.theta_error)),
-        estimator=Mean(least=0.0),
-        unit="rad²",
-        rank=None,
-    ),
-    Metric(
-        key="rho_mse",
-        kind=INITIATION,
-        words="ρ MSE",
-        definition="Mean squared error in ρ over the found targets of a trial; the mean over trials.",
-        values=lambda sample: mean_over_targets(_squares(sample.columns.rho_error)),
-        estimator=Mean(least=0.0),
-        unit="{length}²",
+        words="scans in which 90 % are initiated",
+        definition="Number of scans by which nine of ten found targets have a confirmed track.",
+        values=_scans_to_initiate,
+        estimator=Quantile(0.9),
+        heading="90 % in\nscans",
+        unit="scans",
         rank=None,
     ),
     Metric(

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hough_tui.experiments.columns.schema import Columns
 from hough_tui.experiments.metrics.estimators import Estimate, Estimator
+from hough_tui.experiments.metrics.kinds import Kind
 
 if TYPE_CHECKING:
     # Tables of kept runs need no scenarios: cells are named here, and not loaded.
@@ -41,22 +42,6 @@ class Sample(Generic[CellT, ColumnsT]):
 
 AnySample = Sample[Any, Columns]
 SampleT = TypeVar("SampleT", bound=AnySample)
-
-
-@dataclass(frozen=True, slots=True)
-class Kind:
-    """Kind of experiment that metrics are of.
-
-    Attributes
-    ----------
-    world : the key of a row that names what was drawn; rows of other kinds do not have it
-    columns : what each trial gives
-    leading : the key of the metric that charts and comparisons show unless asked otherwise
-    """
-
-    world: str
-    columns: type[Columns]
-    leading: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,17 +8,18 @@ from typing import Any
 from algorithms.errors import RequestError
 from algorithms.parameters import unknown
 from hough_tui.experiments.columns.schema import Columns
-from hough_tui.experiments.metrics import clustering, initiation, timing
-from hough_tui.experiments.metrics.clustering import CLUSTERING
-from hough_tui.experiments.metrics.initiation import INITIATION
-from hough_tui.experiments.metrics.metric import Kind, Metric
+from hough_tui.experiments.metrics import clustering, exactness, initiation, timing
+from hough_tui.experiments.metrics.kinds import INITIATION, KINDS, Kind, kind_of
+from hough_tui.experiments.metrics.metric import Metric
 
 AnyMetric = Metric[Any]
 
-KINDS = (INITIATION, CLUSTERING)
-"""The kinds of experiment."""
-
-LISTS: tuple[Sequence[AnyMetric], ...] = (initiation.METRICS, clustering.METRICS, timing.METRICS)
+LISTS: tuple[Sequence[AnyMetric], ...] = (
+    initiation.METRICS,
+    exactness.METRICS,
+    clustering.METRICS,
+    timing.METRICS,
+)
 
 METRICS: dict[str, AnyMetric] = {metric.key: metric for metrics in LISTS for metric in metrics}
 """All metrics by key. Whatever shows, writes or offers metrics loops over them when it is called."""
@@ -35,11 +36,6 @@ def metric(key: str) -> AnyMetric:
     if key not in METRICS:
         raise RequestError(unknown(key, list(METRICS), "metric"))
     return METRICS[key]
-
-
-def kind_of(row: Mapping[str, Any]) -> Kind:
-    """Return the kind of experiment that a row of a result document is of."""
-    return next((kind for kind in KINDS if kind.world in row), INITIATION)
 
 
 def metrics_of(kind: Kind) -> Iterator[AnyMetric]:

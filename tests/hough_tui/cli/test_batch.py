@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hough_tui.experiments.metrics.initiation import INITIATION
+from hough_tui.experiments.metrics.kinds import INITIATION
 from hough_tui.experiments.metrics.registry import metrics_of
 from hough_tui.experiments.stores.folder import FolderStore
 
@@ -28,7 +28,7 @@ ROW = {
     "theta_rmse_deg", "rho_rmse", "seconds_per_trial",
 }  # fmt: skip
 FURTHER = {"complete", "format"}
-SETTINGS = {"experiment", "seed", "unit", "parameters", "target_names", "ignores_z"}
+SETTINGS = {"experiment", "seed", "unit", "parameters", "target_names", "ignores_z", "gospa_cutoff"}
 FIGURES = {key for metric in metrics_of(INITIATION) for key in (metric.key, metric.interval_key) if key}
 
 SET = """\

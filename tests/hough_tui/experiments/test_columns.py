@@ -21,7 +21,6 @@ def part(first, trials, targets=2, **effort):
         theta_error=np.where(found, RANDOM.normal(size=found.shape), np.nan),
         rho_error=np.where(found, RANDOM.normal(size=found.shape), np.nan),
         votes_outside=RANDOM.integers(0, 9, trials),
-        control_found=np.zeros((trials, 0)),
         mixed=np.zeros(trials),
         effort={name: np.full(trials, value) for name, value in effort.items()},
     )
@@ -57,10 +56,14 @@ def test_empty_columns_hold_the_declared_fill_and_size():
 def test_files_of_earlier_versions_are_read():
     ours = part(0, 5, pairs=7)
     arrays = ours.arrays()
-    del arrays["mixed"], arrays["trial"]
+    for name in ("mixed", "trial", "nees", "gospa_missed", "scans_to_initiate"):
+        del arrays[name]
     arrays["control_found"] = np.zeros((0, 2), np.bool_)
     columns = TrialColumns.read(arrays, 5)
     assert (columns.mixed == -1).all()
+    assert (columns.scans_to_initiate == -1).all()
+    assert columns.nees.shape == (5, 2)
+    assert np.isnan(columns.nees).all()
     assert columns.trial.tolist() == [0, 1, 2, 3, 4]
     assert columns.control_found.shape == (5, 0)
     np.testing.assert_array_equal(columns.effort["pairs"], ours.effort["pairs"])

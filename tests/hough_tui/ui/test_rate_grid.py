@@ -174,18 +174,16 @@ def many(cell, count):
     random = np.random.default_rng(3)
     found = random.random((count, 2)) < 0.9
     errors = np.where(found, random.normal(size=(count, 2)), np.nan).astype(np.float32)
-    columns = TrialColumns(
-        np.arange(count, dtype=np.int32),
-        found,
-        random.integers(1, 300, count).astype(np.int32),
-        random.integers(0, 50, count).astype(np.int32),
-        random.integers(0, 9, count).astype(np.int32),
-        errors,
-        errors,
-        np.zeros(count, np.int64),
-        random.random((count, 2)) < 0.1,
-        np.full(count, -1, np.int32),
-        {},
+    columns = TrialColumns.of(
+        0,
+        count,
+        found=found,
+        tracks=random.integers(1, 300, count),
+        false=random.integers(0, 50, count),
+        duplicates=random.integers(0, 9, count),
+        theta_error=errors,
+        rho_error=errors,
+        control_found=random.random((count, 2)) < 0.1,
     )
     return TrackTrials(RowTrials(cell, columns))
 

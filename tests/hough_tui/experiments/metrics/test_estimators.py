@@ -2,15 +2,19 @@
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from algorithms.intervals import Z95, wilson
 from hough_tui.experiments.metrics.estimators import (
     NOTHING,
     Mean,
     MeanCount,
+    MeanSquare,
     PooledShare,
+    Quantile,
     RootMeanSquare,
     Share,
+    Squares,
     Total,
     mean_over_targets,
 )
@@ -80,3 +84,26 @@ def test_counts_never_fall_below_zero_and_end_above_it():
 def test_the_mean_over_targets_leaves_out_what_is_missing():
     values = np.array([[1.0, NAN, 3.0], [NAN, NAN, NAN]])
     np.testing.assert_array_equal(mean_over_targets(values), [2.0, NAN])
+
+
+@pytest.mark.parametrize(("scale", "is_right"), [(1.0, True), (1.3, False), (0.75, False)])
+def test_the_interval_of_squares_holds_their_components_where_they_are_right(scale, is_right):
+    values = scale * RANDOM.chisquare(4, size=(300, 2))
+    values[RANDOM.random(values.shape) < 0.2] = NAN
+    low, high = MeanSquare().estimate(Squares(values, 4)).interval
+    assert (low <= 4 <= high) is is_right
+    # The usual test: the sum within the quantiles of the χ² distribution.
+    count = np.isfinite(values).sum()
+    bounds = chi2.ppf([0.025, 0.975], 4 * count)
+    assert (bounds[0] <= np.nansum(values) <= bounds[1]) is np.bool_(is_right)
+
+
+def test_a_quantile_is_the_least_value_that_so_many_do_not_exceed():
+    values = np.array([[3.0, 1.0], [NAN, 2.0], [5.0, 4.0]])
+    assert Quantile(0.9).estimate(values).value == 5.0
+    assert Quantile(0.8).estimate(values).value == 4.0
+    hits = 0
+    for _ in range(300):
+        low, high = Quantile(0.9).estimate(RANDOM.random(400)).interval
+        hits += low <= 0.9 <= high
+    assert hits / 300 >= 0.92

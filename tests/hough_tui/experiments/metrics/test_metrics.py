@@ -11,9 +11,9 @@ import pytest
 
 from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.metrics.estimators import MeanCount
-from hough_tui.experiments.metrics.initiation import INITIATION
+from hough_tui.experiments.metrics.kinds import INITIATION, KINDS
 from hough_tui.experiments.metrics.metric import Metric, Sample
-from hough_tui.experiments.metrics.registry import KINDS, METRICS
+from hough_tui.experiments.metrics.registry import METRICS
 from hough_tui.experiments.plan import plan_run
 from hough_tui.reports.documents import sheet_markdown
 from hough_tui.reports.metric_columns import column_keys, measured, metric_columns
