@@ -140,8 +140,7 @@ class InitiationExperiment(Experiment):
     kinematics: Literal["auto", "always", "never"] = parameter(
         "auto",
         help="whether the states of tracks are judged too (position_rmse, nees, gospa and so on), which "
-        "needs their plots",
-        auto="where tracks are matched by plots, which are at hand then",
+        "needs their plots; auto: where tracks are matched by plots",
     )
     gospa_cutoff: Positive | Auto = parameter(
         "auto",
