@@ -5,16 +5,19 @@ from __future__ import annotations
 import argparse
 import itertools
 import json
+import random
 import sys
 import threading
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from benchmarks.fuzzing.cases import Case, make_case, warm_cases
 from benchmarks.fuzzing.faults import faults, last_line, signature
 from benchmarks.fuzzing.watch import Outcome, Watch
+
+Judge = Callable[[Watch, Case, tuple[str, ...]], tuple[Outcome, list[str]]]
 
 
 class Tally:
@@ -58,17 +61,29 @@ def command_key(arguments: tuple[str, ...]) -> str:
 
 
 def judged(watch: Watch, case: Case, arguments: tuple[str, ...]) -> tuple[Outcome, list[str]]:
-    """Return the outcome of a command and its faults; one that is slow or large is tried again alone."""
+    """Return the outcome of a command and its faults; a fault of the process is tried again alone."""
     watch.write(case.file, case.content)
     outcome = watch.run(arguments)
     kinds = list(faults(outcome))
-    if any(kind.startswith(("slow", "deaf", "hang", "memory")) for kind in kinds):
-        # Kernels may have been compiled, and libraries keep memory: a fresh worker has neither to do.
-        watch.end()
-        watch.write(case.file, case.content)
-        outcome = watch.run(arguments)
-        kinds = list(faults(outcome))
-    return outcome, kinds
+    if not any(kind.startswith(("slow", "deaf", "hang", "memory", "crash", "traceback")) for kind in kinds):
+        return outcome, kinds
+    # Kernels may have been compiled, libraries keep memory, and a command before may have written where it
+    # must not: a fresh worker has none of it.
+    watch.end()
+    alone = watch.run(arguments)
+    if outcome.status is not None and outcome.status < 0 and not list(faults(alone)):
+        return outcome, [f"{kind}, not alone: a command before it is to blame" for kind in kinds]
+    return alone, list(faults(alone))
+
+
+def interrupted(watch: Watch, case: Case, arguments: tuple[str, ...]) -> tuple[Outcome, list[str]]:
+    """Return the outcome of a command that is interrupted at a random moment, with a process of its own."""
+    watch.end()
+    watch.write(case.file, case.content)
+    trials = {"2": "100000"} if arguments[0] == "batch" else {}
+    moment = random.Random(f"{case.name} {arguments}").uniform(0.0, 3.0)
+    outcome = watch.run(tuple(trials.get(argument, argument) for argument in arguments), longest=moment)
+    return outcome, list(faults(outcome))
 
 
 def warm() -> None:
@@ -84,7 +99,9 @@ def warm() -> None:
                     )
 
 
-def run_cases(names: list[str], workers: int, report: Path | None, only: str = "") -> Tally:
+def run_cases(
+    names: list[str], workers: int, report: Path | None, only: str = "", judge: Judge = judged
+) -> Tally:
     """Run cases on several workers: all commands, or only those that have a word.
 
     A report gets a line of JSON for each fault.
@@ -103,7 +120,7 @@ def run_cases(names: list[str], workers: int, report: Path | None, only: str = "
                 for arguments in case.commands:
                     if only and only not in arguments:
                         continue
-                    outcome, kinds = judged(watch, case, arguments)
+                    outcome, kinds = judge(watch, case, arguments)
                     with lock:
                         tally.add(case, outcome, kinds)
                         if report is not None and kinds:
@@ -175,6 +192,7 @@ def main() -> None:
     parser.add_argument(
         "--only", default="", metavar="WORD", help="only the commands with it: batch, standard, …"
     )
+    parser.add_argument("--interrupt", action="store_true", help="interrupt each command at a random moment")
     parser.add_argument("--report", type=Path, metavar="FILE", help="append each fault as a line of JSON")
     parser.add_argument("--case", metavar="KIND:SEED", help="run this case alone and keep its file")
     parser.add_argument("--folder", type=Path, default=Path("case"), help="where --case keeps its file")
@@ -189,7 +207,8 @@ def main() -> None:
     print(f"tables {options.first} to {options.first + options.tables - 1}" if options.tables else "")
     if options.only != "validate":
         warm()
-    tally = run_cases(names, options.workers, options.report, options.only)
+    judge = interrupted if options.interrupt else judged
+    tally = run_cases(names, options.workers, options.report, options.only, judge)
     tally.print()
     sys.exit(bool(tally.faults))
 

@@ -125,9 +125,16 @@ class Watch:
         }
         command = [sys.executable, "-m", "benchmarks.fuzzing.worker", self.entry]
         self.process = subprocess.Popen(
-            command, cwd=self.folder, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+            command,
+            cwd=self.folder,
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            bufsize=0,
         )
         self.commands = 0
+        assert self.process.stdout is not None
+        self.process.stdout.readline()
 
     def _watched(self, arguments: tuple[str, ...], longest: float) -> Outcome:
         assert self.process is not None

@@ -1,8 +1,8 @@
 """The worker: runs commands of hough-tui one after the other in one process, each with its own output files.
 
-It reads a line of JSON, the arguments, from standard input and answers on standard output with a line of
-JSON: exit status, seconds, and the peak of memory in bytes. The output of a command is in the files `out`
-and `err` of the working directory, which outlive a crash.
+It says that it is ready, reads lines of JSON, the arguments, from standard input, and answers each on
+standard output with a line of JSON: exit status, seconds, and the peak of memory in bytes. The output of a
+command is in the files `out` and `err` of the working directory, which outlive a crash.
 """
 
 from __future__ import annotations
@@ -39,6 +39,7 @@ def main() -> None:
     # The default shows a warning once a place, that is to the first case alone.
     for category in (RuntimeWarning, UserWarning, SyntaxWarning, FutureWarning):
         warnings.simplefilter("always", category)
+    os.write(answers, b"ready\n")
     with os.fdopen(requests) as lines:
         for line in lines:
             answer = run(command_line, json.loads(line))
