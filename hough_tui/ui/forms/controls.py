@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from rich.cells import cell_len
 from rich.text import Text
 from textual.binding import Binding
 from textual.message import Message
@@ -29,6 +30,9 @@ class LineInput(Input):
     @property
     def _value(self) -> Text:
         return Text(visible_in_place(self.value), no_wrap=True, overflow="ignore", end="")
+
+    def _position_to_cell(self, position: int) -> int:
+        return cell_len(visible_in_place(self.value[:position]))
 
 
 class NumberInput(LineInput):
