@@ -1,6 +1,7 @@
 """The command in a real pseudo-terminal: how it begins, works, and leaves the terminal as it was."""
 
 import fcntl
+import io
 import json
 import os
 import re
@@ -14,6 +15,9 @@ import time
 from pathlib import Path
 
 import pytest
+
+from algorithms.errors import RequestError
+from hough_tui.ui.terminal import require_terminal
 
 PATIENCE = 60.0
 """Seconds until a wait is given up."""
@@ -237,3 +241,28 @@ def test_settings_that_are_wrong_end_it_before_the_screen_is_touched(tmp_path):
         assert TO_ALTERNATE not in terminal.output.decode()
         assert "config.yaml:2:1" in terminal.text
         assert termios.tcgetattr(terminal.slave) == terminal.before
+
+
+def test_a_terminal_of_ascii_is_drawn_on_in_ascii(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONIOENCODING", "ascii")
+    path = tmp_path / "\x1b]0;owned\x07.yaml"
+    path.write_bytes((PROJECT / "scenarios/sets/course-report.yaml").read_bytes())
+    with Terminal(tmp_path, "xterm-256color", path.name) as terminal:
+        terminal.until("two-crossing")
+        terminal.until(r"\x1b]0;owned\x07.yaml")
+        terminal.until("Interval")
+        terminal.press(CTRL_Q)
+        assert terminal.status() == 0
+        assert_restored(terminal)
+    assert terminal.output.isascii()
+    assert b"\x1b]0;" not in terminal.output
+    assert rb"\u25" not in terminal.output
+
+
+def test_without_a_terminal_to_draw_on_it_refuses(monkeypatch):
+    streams = {name: io.StringIO() for name in ("stdin", "stdout", "stderr")}
+    for name, stream in streams.items():
+        monkeypatch.setattr(stream, "isatty", lambda name=name: name != "stderr", raising=False)
+        monkeypatch.setattr(sys, name, stream)
+    with pytest.raises(RequestError, match="draws on standard error"):
+        require_terminal()
