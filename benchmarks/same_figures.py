@@ -54,6 +54,11 @@ def documents(folder: Path, arguments: list[str]) -> Any:
     return json.loads(done.stdout, parse_float=str, parse_int=str)
 
 
+def sets_of(document: Any) -> list[Row]:
+    """Return the sets of a listing, which was a bare list once."""
+    return document["sets"] if isinstance(document, dict) else document
+
+
 @contextlib.contextmanager
 def checkout(against: str) -> Iterator[Path]:
     """Provide the folder of another state of the code: itself, or a worktree of a revision for the time."""
@@ -127,7 +132,8 @@ def main() -> int:
     asked = options.parse_args()
     with checkout(asked.against) as folder:
         ours, theirs = (
-            [listed["name"] for listed in documents(tree, ["sets", "--json"])] for tree in (HERE, folder)
+            [listed["name"] for listed in sets_of(documents(tree, ["sets", "--json"]))]
+            for tree in (HERE, folder)
         )
         for name in theirs:
             if name not in ours:

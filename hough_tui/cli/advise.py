@@ -75,7 +75,7 @@ def advise(
     from hough_tui.quantisation.advice import document
     from hough_tui.quantisation.designs import scenario_design, sensing_design
     from hough_tui.reports.advice import advice_tables
-    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.documents import document_text
 
     wanted = demands(false_cells, kappa, separation, confidence)
     if name is None:
@@ -100,6 +100,6 @@ def advise(
         for note in adoption.notes:
             tell(note)
     if as_json:
-        write_document(json_text(told))
+        write_document(document_text(told))
         return
     print_renderables(*advice_tables(told, output_width(), with_map))

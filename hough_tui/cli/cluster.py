@@ -76,7 +76,7 @@ def cluster(
         with_cells,
     )
     from hough_tui.reports.clusters import cluster_table, step_table
-    from hough_tui.reports.documents import csv_text, json_text
+    from hough_tui.reports.documents import csv_text, document_text
     from scenarios.files.atomic import replace_file
     from scenarios.files.point_files import parse_points
     from scenarios.files.set_files import read_text
@@ -99,7 +99,7 @@ def cluster(
             return
         replace_file(Path(csv), text)
     if as_json:
-        write_document(json_text(told))
+        write_document(document_text(told))
         return
     print_renderables(cluster_table(told, output_width()))
     place = recording.place(recording.fullest)

@@ -18,7 +18,7 @@ def sets(
     as_json: JsonOption = False,
 ) -> None:
     """List the bundled scenario sets, or print one to begin from."""
-    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.documents import document_text
     from hough_tui.reports.tables import listing
     from scenarios.files.set_files import bundled_sets, locate, read_text
 
@@ -28,7 +28,8 @@ def sets(
         return
     known = bundled_sets()
     if as_json:
-        write_document(json_text([{"name": found.name, "description": found.description} for found in known]))
+        listed = [{"name": one.name, "description": one.description} for one in known]
+        write_document(document_text({"sets": listed}))
         return
     entries = [(found.name, found.description) for found in known]
     print_renderables(listing("bundled scenario sets", entries, output_width()))
@@ -45,13 +46,13 @@ def initiators(
     from algorithms.initiators.registry import initiator
     from algorithms.initiators.registry import initiators as known
     from hough_tui.reports.describe_initiator import declaration
-    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.documents import document_text
     from hough_tui.reports.tables import listing
 
     chosen = [initiator(name)] if name else list(known().values())
     told = [declaration(found) for found in chosen]
     if as_json:
-        write_document(json_text(told[0] if name else told))
+        write_document(document_text({"initiators": told}))
     elif name:
         entries = [(found["name"], described(found)) for found in told[0]["parameters"]]
         title = f"{name}: {told[0]['summary']}"
@@ -101,12 +102,12 @@ def validate(
 @reported
 def metrics(as_json: JsonOption = False) -> None:
     """List what experiments measure: what --columns, --metric and charts take, and documents hold."""
-    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.documents import document_text
     from hough_tui.reports.layout import sheet_table
     from hough_tui.reports.metric_listing import metric_document, metric_sheet
 
     if as_json:
-        write_document(json_text(metric_document()))
+        write_document(document_text(metric_document()))
     else:
         print_renderables(sheet_table(metric_sheet(), output_width()))
 

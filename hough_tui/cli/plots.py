@@ -73,7 +73,7 @@ def initiate(
     from algorithms.initiators.registry import initiator
     from hough_tui.cli.sensor_options import known_sensor, window
     from hough_tui.recorded import initiation
-    from hough_tui.reports.documents import json_text, track_csv
+    from hough_tui.reports.documents import document_text, track_csv
     from scenarios.files.atomic import replace_file
     from scenarios.files.set_files import read_text
     from scenarios.recordings.csv_plots import parse_plots, write_assigned
@@ -103,7 +103,7 @@ def initiate(
     if csv is not None and not is_printed:
         replace_file(csv, track_csv(found.tracks))
     if as_json or is_printed:
-        write_document(json_text(document) if as_json else track_csv(found.tracks))
+        write_document(document_text(document) if as_json else track_csv(found.tracks))
         return
     from hough_tui.reports.tables import track_table
 

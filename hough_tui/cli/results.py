@@ -22,12 +22,12 @@ results_app = typer.Typer(
 def list_results(as_json: JsonOption = False) -> None:
     """List the runs that were kept, the newest first."""
     from hough_tui.experiments.stores.folder import FolderStore
-    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.documents import document_text
     from hough_tui.reports.tables import listing
 
     names = FolderStore().names()
     if as_json:
-        write_document(json_text(names))
+        write_document(document_text({"runs": names}))
     elif names:
         store = FolderStore()
         documents = [(name, store.document(name)) for name in names]
@@ -54,12 +54,12 @@ def show_result(
     """Show the rates of a run that was kept."""
     refuse(as_json and plot, "--json prints one document and nothing else: leave out --plot")
     from hough_tui.experiments.stores.folder import FolderStore
-    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.documents import document_text
 
     shown = Shown.parse(columns, metric)
     document = FolderStore().document(name)
     if as_json:
-        write_document(json_text(document))
+        write_document(document_text(document))
     else:
         print_rates(document["rows"], shown, plot)
 
@@ -85,7 +85,7 @@ def compare_results(
     from hough_tui.experiments.metrics.registry import leading_metric
     from hough_tui.experiments.stores.folder import FolderStore
     from hough_tui.reports.comparison import compare, comparison_document, comparison_sheet
-    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.documents import document_text
     from hough_tui.reports.layout import sheet_table
     from hough_tui.reports.metric_columns import charted
 
@@ -98,7 +98,7 @@ def compare_results(
     rows = [row for _, run in runs for row in run.document["rows"]]
     comparison = compare(runs, chosen or leading_metric(rows))
     if as_json:
-        write_document(json_text(comparison_document(comparison)))
+        write_document(document_text(comparison_document(comparison)))
     else:
         print_renderables(sheet_table(comparison_sheet(comparison), output_width()))
 

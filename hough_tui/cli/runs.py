@@ -60,7 +60,7 @@ def batch(
     from hough_tui.experiments.engines.threads import Job
     from hough_tui.experiments.plan import plan_run
     from hough_tui.experiments.results import result
-    from hough_tui.reports.documents import csv_text, json_text
+    from hough_tui.reports.documents import csv_text, document_text
     from scenarios.files.atomic import replace_file
     from scenarios.files.set_files import load_set
 
@@ -78,7 +78,7 @@ def batch(
     run = result(job)
     status = keep_run(run) if keep else 0
     if as_json:
-        write_document(json_text(run.document))
+        write_document(document_text(run.document))
     elif str(csv) == "-":
         write_document(csv_text(run.document["rows"]))
     else:
@@ -172,7 +172,7 @@ def reproduce(
     from hough_tui.experiments.engines.threads import Job
     from hough_tui.published.comparison import TABLES, compare, plan_table
     from hough_tui.published.comparison import published_table as find_table
-    from hough_tui.reports.documents import json_text
+    from hough_tui.reports.documents import document_text
     from hough_tui.reports.tables import published_table
 
     documents = []
@@ -183,6 +183,6 @@ def reproduce(
         finish(job, chosen.name)
         documents.append(compare(chosen, job))
     if as_json:
-        write_document(json_text(documents[0] if table else {"tables": documents}))
+        write_document(document_text({"tables": documents}))
         return
     print_renderables(*(published_table(document, output_width()) for document in documents))

@@ -12,9 +12,7 @@ from numpy.typing import NDArray
 from algorithms.errors import RequestError
 from algorithms.intervals import Z95, effective_count
 from algorithms.parameters import unknown
-from hough_tui import __version__
 from hough_tui.experiments.engines.threads import Job
-from hough_tui.experiments.formats import FORMAT
 from hough_tui.experiments.metrics.metric import AnySample, Sample
 from hough_tui.experiments.metrics.registry import metric
 from hough_tui.experiments.plan import Plan, plan_run
@@ -60,8 +58,6 @@ def compare(table: PublishedTable, job: Job) -> dict[str, Any]:
     """Return a table's published figures beside those that a finished job measured."""
     samples = [Sample(cell, columns, seconds) for cell, columns, seconds in job.finished()]
     return {
-        "format": FORMAT,
-        "version": __version__,
         "table": table.name,
         "title": table.title,
         "source": table.source,

@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 
 from algorithms.tracks import Tracks
+from hough_tui import __version__
+from hough_tui.experiments.formats import FORMAT
 from hough_tui.reports.layout import Column, Sheet
 from hough_tui.reports.rates import rate_sheets
 from hough_tui.reports.visible import ACTING
@@ -96,9 +98,14 @@ def json_text(document: object) -> str:
     return ACTING.sub(lambda match: f"\\u{ord(match[0]):04x}", text) + "\n"
 
 
+def document_text(document: Mapping[str, Any]) -> str:
+    """Return a document for scripts as JSON: first its format and the version, unless it has its own."""
+    return json_text({"format": FORMAT, "version": __version__, **document})
+
+
 FORMATS: dict[str, tuple[str, Callable[[Mapping[str, Any]], str]]] = {
     ".csv": ("CSV", lambda document: csv_text(document["rows"])),
-    ".json": ("JSON", json_text),
+    ".json": ("JSON", document_text),
     ".md": ("Markdown", lambda document: markdown_text(document["rows"])),
 }
 """By the ending of a file's name: what the format is called, and how a result document is written so."""

@@ -118,7 +118,7 @@ def hough_tui(data_home, tmp_path):
 def test_a_plug_in_is_listed_with_its_parameters_and_refuses_what_they_do_not_allow(hough_tui, tmp_path):
     listed = hough_tui("initiators", "--json")
     assert listed.returncode == 0, listed.stderr
-    told = {found["name"]: found for found in json.loads(listed.stdout)}
+    told = {found["name"]: found for found in json.loads(listed.stdout)["initiators"]}
     assert {"standard", "sequential", "modified"} < told.keys()
     assert told["ends"]["summary"] == "straight ways from the first scan to the last"
     assert {found["name"]: (found["default"], found["help"]) for found in told["ends"]["parameters"]} == {

@@ -37,7 +37,7 @@ def cli(data_home, monkeypatch, capsys):
 
 
 def test_the_bundled_sets_are_listed(cli):
-    listed = json.loads(cli("sets", "--json"))
+    listed = json.loads(cli("sets", "--json"))["sets"]
     assert [found["name"] for found in listed] == sorted(bundled_paths())
     assert {"course-report", "course-text"} <= {found["name"] for found in listed}
     table = cli("sets")
@@ -90,7 +90,7 @@ def declared(model: type[BaseModel], prefix: str = ""):
 
 
 def test_the_initiators_are_listed(cli):
-    told = json.loads(cli("initiators", "--json"))
+    told = json.loads(cli("initiators", "--json"))["initiators"]
     assert [found["name"] for found in told] == list(initiators())
     table = cli("initiators")
     for found in told:
@@ -102,7 +102,7 @@ def test_the_initiators_are_listed(cli):
 def test_an_initiator_names_every_parameter_with_its_help(cli, name):
     expected = dict(declared(initiators()[name].parameters))
     assert expected
-    told = json.loads(cli("initiators", name, "--json"))
+    (told,) = json.loads(cli("initiators", name, "--json"))["initiators"]
     assert {found["name"]: found["help"] for found in told["parameters"]} == expected
     lines = cli("initiators", name).splitlines()
     for parameter, text in expected.items():
@@ -112,9 +112,8 @@ def test_an_initiator_names_every_parameter_with_its_help(cli, name):
 
 
 def test_a_parameter_tells_its_default_and_what_is_allowed(cli):
-    told = {
-        found["name"]: found for found in json.loads(cli("initiators", "sequential", "--json"))["parameters"]
-    }
+    (declared,) = json.loads(cli("initiators", "sequential", "--json"))["initiators"]
+    told = {parameter["name"]: parameter for parameter in declared["parameters"]}
     assert told["maxima"]["default"] == 2
     assert told["ties"]["allowed"] == "last, first"
     assert told["fraction"]["allowed"] == "number ≥ 0, ≤ 1"
@@ -241,7 +240,7 @@ def test_the_schema_knows_every_initiator_and_its_parameters(schema):
 
 
 def test_a_published_table_stands_beside_what_is_measured(cli):
-    told = json.loads(cli("reproduce", "course-2-1", "--trials", 200, "--json"))
+    (told,) = json.loads(cli("reproduce", "course-2-1", "--trials", 200, "--json"))["tables"]
     assert (told["table"], told["trials"]) == ("course-2-1", 200)
     row = told["rows"][0]
     assert row.keys() >= {"case", "metric", "published", "measured", "ci95", "consistent", "note"}

@@ -43,7 +43,9 @@ def test_runs_are_compared_row_by_row(cli, kept, monkeypatch):
     status, out, _ = cli("results", "compare", *kept, "--json")
     assert status == 0
     document = json.loads(out)
-    assert document.keys() == {"runs", "seeds", "metric", "rows", "rows_in_one_run_only", "same_criteria"}
+    assert document.keys() == {
+        "format", "version", "runs", "seeds", "metric", "rows", "rows_in_one_run_only", "same_criteria"
+    }  # fmt: skip
     assert (document["runs"], document["seeds"]) == (kept, [3, 3])
     assert (document["metric"], document["rows_in_one_run_only"]) == ("success_rate", 1)
     assert document["same_criteria"] is True

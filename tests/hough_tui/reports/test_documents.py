@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from hough_tui.reports.documents import csv_text, json_text, markdown_text
+from hough_tui.reports.documents import csv_text, document_text, json_text, markdown_text
 
 
 def read_csv(text):
@@ -109,3 +109,10 @@ def test_json_of_arrays_and_long_lists():
 def test_json_refuses_what_it_does_not_know():
     with pytest.raises(TypeError, match="object"):
         json_text({"a": object()})
+
+
+def test_documents_say_their_format_and_version_first():
+    document = json.loads(document_text({"sets": []}))
+    assert list(document) == ["format", "version", "sets"]
+    assert document["format"] == 2
+    assert json.loads(document_text({"version": "0.0.1", "rows": []}))["version"] == "0.0.1"
