@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol, Union, cast, get_args
 
-from pydantic import Discriminator, Tag, create_model
+from pydantic import BeforeValidator, Discriminator, Tag, create_model
 
 from algorithms.clustering.parameters import MODES, Clustering
 from algorithms.context import Context
 from algorithms.initiators.base import Initiator
-from algorithms.initiators.registry import initiator, initiators
+from algorithms.initiators.registry import exclude, initiator, initiators, why_missing
 from algorithms.parameters import Declared, Name, Parameters, parameter, with_default
 from scenarios.scenes import Scene
 
@@ -73,8 +73,27 @@ def entry_model(declared: Initiator) -> type[InitiatorEntry]:
     )
 
 
+def entry_models() -> dict[str, type[InitiatorEntry]]:
+    """Return the models of the entries of all initiators, without plug-ins for which there can be none."""
+    models = {}
+    for name, declared in list(initiators().items()):
+        try:
+            models[name] = entry_model(declared)
+        except Exception as error:
+            exclude(name, error)
+    return models
+
+
 def _which(entry: Any) -> str | None:
     return _named(entry, "initiator")
+
+
+def _require_initiator(entry: Any) -> Any:
+    """Refuse an entry of an initiator that there is not, or whose plug-in could not be loaded."""
+    name = _which(entry)
+    if name is not None and name not in initiators():
+        raise ValueError(why_missing(name))
+    return entry
 
 
 class ClusteringEntry(Declared):
@@ -161,8 +180,9 @@ if TYPE_CHECKING:
     AnyClusteringEntry = ClusteringEntry
 else:
     Entry = Annotated[
-        Union[tuple(Annotated[entry_model(known), Tag(known.name)] for known in initiators().values())],  # noqa: UP007
+        Union[tuple(Annotated[model, Tag(name)] for name, model in entry_models().items())],  # noqa: UP007
         Discriminator(_which),
+        BeforeValidator(_require_initiator),
     ]
     AnyClusteringEntry = Annotated[
         Union[tuple(Annotated[clustering_entry_model(known), Tag(mode)] for mode, known in MODES.items())],  # noqa: UP007

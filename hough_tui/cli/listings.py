@@ -43,22 +43,22 @@ def initiators(
     as_json: JsonOption = False,
 ) -> None:
     """List the initiators, or show the parameters of one."""
-    from algorithms.initiators.registry import initiator
-    from algorithms.initiators.registry import initiators as known
-    from hough_tui.reports.describe_initiator import declaration
+    from algorithms.initiators import registry
+    from hough_tui.reports.describe_initiator import declaration, failed_declaration
     from hough_tui.reports.documents import document_text
     from hough_tui.reports.tables import listing
 
-    chosen = [initiator(name)] if name else list(known().values())
-    told = [declaration(found) for found in chosen]
+    chosen = [registry.initiator(name)] if name else list(registry.initiators().values())
+    failed = [] if name else registry.failed_plug_ins()
+    declared = [*map(declaration, chosen), *map(failed_declaration, failed)]
     if as_json:
-        write_document(document_text({"initiators": told}))
+        write_document(document_text({"initiators": declared}))
     elif name:
-        entries = [(found["name"], described(found)) for found in told[0]["parameters"]]
-        title = f"{name}: {told[0]['summary']}"
+        entries = [(parameter["name"], described(parameter)) for parameter in declared[0]["parameters"]]
+        title = f"{name}: {declared[0]['summary']}"
         print_renderables(listing(title, entries, output_width(), ("parameter", "what it is")))
     else:
-        entries = [(found["name"], found["summary"]) for found in told]
+        entries = [(each["name"], each["error"] or each["summary"]) for each in declared]
         print_renderables(listing("initiators", entries, output_width()))
 
 

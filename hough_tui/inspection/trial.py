@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.hough.voting import Accumulator
+from algorithms.initiators.guard import located
 from algorithms.parameters import Parameters
 from algorithms.plots import Plots
 from algorithms.scoring.matching import score
@@ -114,18 +115,21 @@ def look(
     ------
     RequestError
         Where the initiator refuses the parameters or the plots.
+    PlugInError
+        Where a plug-in fails.
     """
     algorithm, context = entry.algorithm, seen.scenario.context
-    if algorithm.name not in _loaded:
-        # The first run also loads, or compiles, its code; the time told is that of the work.
-        algorithm.strongest(seen.plots, context, parameters, MOST_TRACKS)
-        _loaded.add(algorithm.name)
-    began = time.perf_counter()
-    tracks, total = algorithm.strongest(seen.plots, context, parameters, MOST_TRACKS)
-    seconds = time.perf_counter() - began
+    with located(f"scenario {seen.scenario.name}, seed {seen.seed}, trial {seen.trial}"):
+        if algorithm.name not in _loaded:
+            # The first run also loads, or compiles, its code; the time told is that of the work.
+            algorithm.strongest(seen.plots, context, parameters, MOST_TRACKS)
+            _loaded.add(algorithm.name)
+        began = time.perf_counter()
+        tracks, total = algorithm.strongest(seen.plots, context, parameters, MOST_TRACKS)
+        seconds = time.perf_counter() - began
+        accumulator = algorithm.accumulator(seen.plots, context, parameters)
+        plane_votes = algorithm.plane_votes(seen.plots, context, parameters)
     state = None if criterion is None else _states(seen, tracks, criterion)
-    accumulator = algorithm.accumulator(seen.plots, context, parameters)
-    plane_votes = algorithm.plane_votes(seen.plots, context, parameters)
     return TrialLook(seen, entry, parameters, tracks, total, state, accumulator, plane_votes, seconds)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import math
 import time
@@ -17,6 +18,7 @@ from algorithms.context import Box, Context, Unit
 from algorithms.errors import RequestError
 from algorithms.hough.voting import Accumulator
 from algorithms.initiators.base import Initiator
+from algorithms.initiators.guard import PlugInError
 from algorithms.parameters import Parameters, problems, validated
 from algorithms.plots import Plots
 from algorithms.tracks import Tracks
@@ -209,11 +211,15 @@ def initiate(
     ------
     RequestError
         Where the parameters do not fit the context.
+    PlugInError
+        Where a plug-in fails.
     """
     resolved = parameters.resolved(context)
     plots = recording.plots
-    # Compiled code is loaded here, so that the time given below is the algorithm's own.
-    algorithm.initiate(_no_plots(plots), context, resolved)
+    # Compiled code is loaded here, so that the time given below is the algorithm's own. A plug-in need not
+    # bear a batch without plots for that: what it refuses of the plots themselves, it refuses below.
+    with contextlib.suppress(PlugInError, RequestError):
+        algorithm.initiate(_no_plots(plots), context, resolved)
     began = time.perf_counter()
     tracks, total = algorithm.strongest(plots, context, resolved, most)
     seconds = time.perf_counter() - began

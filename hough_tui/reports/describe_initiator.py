@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from algorithms.initiators.base import Initiator
+from algorithms.initiators.registry import FailedPlugIn
 from algorithms.parameters import LARGEST_WHOLE
 
 TYPES = {
@@ -22,14 +23,20 @@ BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiv
 def declaration(algorithm: Initiator) -> dict[str, Any]:
     """Return name, summary, source and parameters of an initiator.
 
-    Each parameter has `name` (dotted), `default`, `allowed`, `dimension` and `help`.
+    Each parameter has `name` (dotted), `default`, `allowed`, `dimension` and `help`; `error` is None.
     """
     return {
         "name": algorithm.name,
         "summary": algorithm.summary,
         "source": algorithm.source,
         "parameters": list(_parameters(algorithm.parameters, "")),
+        "error": None,
     }
+
+
+def failed_declaration(failed: FailedPlugIn) -> dict[str, Any]:
+    """Return a plug-in that cannot be used in the same form, with `error` saying why."""
+    return {"name": failed.name, "summary": "", "source": "", "parameters": [], "error": failed.words}
 
 
 def _parameters(model: type[BaseModel], prefix: str) -> list[dict[str, Any]]:

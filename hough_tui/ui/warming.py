@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from algorithms.errors import RequestError
+from pydantic import ValidationError
+
+from algorithms.errors import RequestError, WorkFailedError
 from algorithms.initiators.base import ChunkInitiator
 from algorithms.initiators.registry import initiators
 from algorithms.scoring.matching import Criterion, score
@@ -72,10 +74,10 @@ def _warm_initiators(scenario: Scenario) -> None:
         try:
             parameters = algorithm.parameters.model_validate({}).resolved(context)
             tracks = algorithm.tracks_of_chunk(drawn.chunk, context, parameters, plots=True, states=True)
-        except RequestError:
-            # A plug-in may want more than this scene has. Nobody asked for it yet: it says so when run.
+            algorithm.accumulator(drawn.chunk.trial(0), context, parameters)
+        except (RequestError, WorkFailedError, ValidationError):
+            # A plug-in may want more than this scene has, or fail: nobody asked for it yet.
             continue
-        algorithm.accumulator(drawn.chunk.trial(0), context, parameters)
         for criterion in (Criterion(rho=1.0), Criterion(plots=2)):
             score(tracks, known, drawn.chunk.offsets, criterion)
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -174,12 +175,53 @@ def test_a_plug_in_runs_on_recorded_plots(hough_tui, tmp_path):
     assert "accumulator" not in found
 
 
-def test_a_plug_in_that_cannot_be_loaded_is_named(hough_tui, tmp_path):
-    (tmp_path / "site" / "ends.py").write_text("import nothing_of_this_name\n")
-    done = hough_tui("initiators")
-    assert done.returncode == 2
-    assert done.stdout == ""
-    assert done.stderr.startswith(
-        "hough-tui: plug-in 'ends' (ends:Ends) cannot be loaded: ModuleNotFoundError"
+def test_a_plug_in_that_cannot_be_loaded_is_a_warning(hough_tui, tmp_path):
+    module = tmp_path / "site" / "ends.py"
+    module.write_text("import nothing_of_this_name\n")
+    reason = (
+        "plug-in 'ends' (ends:Ends, ends 1.0) cannot be loaded: ModuleNotFoundError: "
+        f"No module named 'nothing_of_this_name' ({module}:1); mend or remove it"
     )
+    done = hough_tui("initiators", "--json")
+    assert done.returncode == 0
+    listed = {each["name"]: each for each in json.loads(done.stdout)}
+    assert listed["ends"] == {
+        "name": "ends", "summary": "", "source": "", "parameters": [], "error": reason,
+    }  # fmt: skip
+    assert listed["standard"]["error"] is None
+    assert done.stderr == f"hough-tui: {reason}; everything else works without it\n"
+    checked = hough_tui("validate", "course-report", "plain.yaml")
+    assert checked.returncode == 2
+    assert checked.stdout.startswith("course-report: valid")
+    assert (
+        f"plain.yaml:12:5: initiators[0]: the initiator 'ends' could not be loaded: {reason}"
+        in checked.stderr
+    )
+    assert "Traceback" not in done.stderr + checked.stderr
+
+
+def failing(tmp_path, line):
+    """Have the plug-in run a line in trials of 17 plots; return where the line stands."""
+    module = tmp_path / "site" / "ends.py"
+    begin = "        found, states = [], []\n"
+    text = MODULE.replace(begin, f"        if len(plots) == 17:\n            {line}\n{begin}")
+    module.write_text(text)
+    return f"{module}:{text[: text.index(line)].count(chr(10)) + 1}"
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("plots.speed", "AttributeError: 'Plots' object has no attribute 'speed' ({place})"),
+        ("import os; os._exit(3)", "initiator ends: its worker process died"),
+    ],
+)
+def test_a_plug_in_that_fails_is_named_with_trial_and_line(hough_tui, tmp_path, line, words):
+    place = failing(tmp_path, line)
+    done = hough_tui("batch", "plain.yaml", "--experiment", "basic", "--trials", "60", "--no-keep")
+    assert done.returncode == 1
+    assert done.stdout == ""
+    (message,) = [text for text in done.stderr.splitlines() if words.format(place=place) in text]
+    assert re.match(r"hough-tui: set plain, scenario one( \(the control\))?, seed 5, trials? \d+", message)
+    assert message.endswith("; mend the plug-in")
     assert "Traceback" not in done.stderr

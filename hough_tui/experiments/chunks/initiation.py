@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from algorithms.initiators.base import ChunkInitiator
+from algorithms.initiators.guard import PlugInError, located
 from algorithms.plots import PlotChunk
 from algorithms.scoring.gospa import gospa
 from algorithms.scoring.kinematics import kinematic_errors
@@ -137,11 +138,14 @@ class ScenarioDraws(SharedDraws[InitiationCell, PlotSource]):
             stage = run.first.clustering
             drawn, drawing = chunk.plots(stage)
             states = any(cell.experiment.judges_states for cell in run.cells.values())
-            tracks, finding = self._tracks(run, drawn.chunk, run_in_process, states=states)
+            where = f"set {run.first.set_name}, scenario {self.scenario.name}, seed {self.seed}"
+            tracks, finding = self._tracks(run, drawn.chunk, run_in_process, first, where, states=states)
             has_control = any(cell.has_control for cell in run.cells.values())
             if has_control:
-                control = chunk.control(stage)
-                control_tracks, _ = self._tracks(run, control.chunk, run_in_process, states=False)
+                control, where = chunk.control(stage), f"{where} (the control)"
+                control_tracks, _ = self._tracks(
+                    run, control.chunk, run_in_process, first, where, states=False
+                )
             for index, cell in run.cells.items():
                 began = time.thread_time()
                 columns = scored(cell, tracks, drawn)
@@ -155,6 +159,8 @@ class ScenarioDraws(SharedDraws[InitiationCell, PlotSource]):
         run: SharedRun[InitiationCell],
         chunk: PlotChunk,
         run_in_process: Callable[..., Any],
+        first: int,
+        where: str,
         *,
         states: bool,
     ) -> tuple[TrackChunk, float]:
@@ -162,18 +168,35 @@ class ScenarioDraws(SharedDraws[InitiationCell, PlotSource]):
 
         Parameters
         ----------
+        first, where : number of the first trial, and whose trials they are, for messages
         states : whether their states are judged
         """
         algorithm, parameters = run.first.entry.algorithm, run.first.parameters
         context = self.scenario.context
         if not isinstance(algorithm, ChunkInitiator):
             timed: tuple[TrackChunk, float] = run_in_process(
-                f"initiator {algorithm.name}", initiate_trials, algorithm.name, parameters, context, chunk
+                f"{where}, trials {first} to {first + chunk.trials - 1}: initiator {algorithm.name}",
+                initiate_trials,
+                algorithm.name,
+                parameters,
+                context,
+                chunk,
+                first,
+                where,
             )
             return timed
         began = time.thread_time()
         plots = any(cell.criterion.plots is not None for cell in run.cells.values())
-        tracks = algorithm.tracks_of_chunk(chunk, context, parameters, plots=plots, states=states)
+        try:
+            tracks = algorithm.tracks_of_chunk(chunk, context, parameters, plots=plots, states=states)
+        except PlugInError:
+            # Its trials one by one, so that the message names the one that fails.
+            for trial in range(chunk.trials):
+                with located(f"{where}, trial {first + trial}"):
+                    alone = chunk.trial(trial).chunk()
+                    algorithm.tracks_of_chunk(alone, context, parameters, plots=plots, states=states)
+            with located(f"{where}, trials {first} to {first + chunk.trials - 1}"):
+                raise
         return tracks, time.thread_time() - began
 
 

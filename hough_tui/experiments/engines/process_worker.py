@@ -11,7 +11,7 @@ import time
 import numpy as np
 
 from algorithms.context import Context
-from algorithms.errors import RequestError
+from algorithms.initiators.guard import located
 from algorithms.initiators.registry import initiator
 from algorithms.parameters import Parameters
 from algorithms.plots import PlotChunk
@@ -19,7 +19,7 @@ from algorithms.tracks import TrackChunk, Tracks, TrackStates
 
 
 def initiate_trials(
-    name: str, parameters: Parameters, context: Context, chunk: PlotChunk
+    name: str, parameters: Parameters, context: Context, chunk: PlotChunk, first: int, where: str
 ) -> tuple[TrackChunk, float]:
     """Return the tracks of each trial of a chunk, with their plots, and the processor time that they took.
 
@@ -28,37 +28,16 @@ def initiate_trials(
     name : of the initiator
     parameters, context : as `Initiator.initiate` takes them
     chunk : plots
+    first : number of the first trial
+    where : set and scenario, to be named where the initiator fails
     """
     algorithm = initiator(name)
     began = time.thread_time()
     batches = []
     for index in range(chunk.trials):
-        plots = chunk.trial(index)
-        tracks = algorithm.initiate(plots, context, parameters)
-        check(tracks, len(plots), name)
-        batches.append(tracks)
+        with located(f"{where}, trial {first + index}"):
+            batches.append(algorithm.initiate(chunk.trial(index), context, parameters))
     return gathered(batches), time.thread_time() - began
-
-
-def check(tracks: Tracks, plots: int, name: str) -> None:
-    """Refuse tracks that kernels could not take.
-
-    Raises
-    ------
-    RequestError
-        Where columns differ in length, or a track names a plot that there is not.
-    """
-    columns = (tracks.theta, tracks.rho, tracks.score, tracks.plots, tracks.confirmed_scan, *tracks.states)
-    if len({len(column) for column in columns}) != 1:
-        raise RequestError(
-            f"initiator {name}: its tracks have columns of different lengths; mend the plug-in"
-        )
-    for rows in tracks.plots:
-        if len(rows) and not 0 <= int(np.min(rows)) <= int(np.max(rows)) < plots:
-            raise RequestError(
-                f"initiator {name}: a track names plot {int(np.max(rows))}, and the batch has {plots} plots; "
-                "mend the plug-in"
-            )
 
 
 def begin_worker() -> None:

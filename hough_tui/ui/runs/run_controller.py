@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from algorithms.errors import RequestError
+from algorithms.errors import RequestError, WorkFailedError
 from hough_tui.experiments.cases import Row
 from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.plan import plan_run
@@ -173,7 +173,7 @@ def keep(live: LiveRun) -> tuple[str | None, str | None]:
 
 def problem_words(error: Exception) -> str:
     """Return what went wrong, in words that help."""
-    if isinstance(error, RequestError):
+    if isinstance(error, RequestError | WorkFailedError):
         return str(error)
     if isinstance(error, MemoryError):
         return "There is not enough memory for so many trials; ask for fewer trials or fewer experiments."

@@ -15,7 +15,7 @@ from textual.widget import Widget
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
-from algorithms.errors import RequestError
+from algorithms.errors import RequestError, WorkFailedError
 from algorithms.initiators.accumulating import AccumulatingParameters
 from algorithms.initiators.registry import initiators
 from algorithms.parameters import Problem
@@ -181,7 +181,7 @@ class InitiatorView(Widget):
         resolved: Any = None
         try:
             resolved = entry.parameters.resolved(scenario.context)
-        except RequestError as error:
+        except (RequestError, WorkFailedError) as error:
             caption.update(str(error))
         form.load(entry, ("initiators", self._index), unit=scenario.unit, resolved=resolved)
         self._predict(entry)

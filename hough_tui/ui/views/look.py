@@ -12,7 +12,7 @@ from textual.containers import Horizontal
 from textual.widget import Widget
 from textual.worker import get_current_worker
 
-from algorithms.errors import RequestError
+from algorithms.errors import RequestError, WorkFailedError
 from algorithms.parameters import Parameters
 from hough_tui.experiments.chunks.initiation import InitiationCell
 from hough_tui.inspection.trial import Picture, TrialLook, look, picture
@@ -246,7 +246,7 @@ class LookView(Widget):
             try:
                 resolved = parameters or entry.parameters.resolved(scenario.context)
                 found.append(look(drawn, entry, resolved, criterion))
-            except RequestError as error:
+            except (RequestError, WorkFailedError) as error:
                 found.append(f"{entry.name}: {error}")
         if not worker.is_cancelled:
             self.app.call_from_thread(self._show, drawn, found, swept)

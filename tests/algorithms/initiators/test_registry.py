@@ -1,15 +1,18 @@
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from pydantic import create_model
 
+from algorithms import notices
 from algorithms.context import Context
 from algorithms.errors import RequestError
-from algorithms.initiators import registry
+from algorithms.initiators import guard, registry
 from algorithms.initiators.base import ChunkInitiator, Initiator
 from algorithms.parameters import Parameters, parameter
 from algorithms.plots import Plots
@@ -63,6 +66,8 @@ def with_plug_ins(monkeypatch):
             return list(points)
 
         monkeypatch.setattr(registry, "entry_points", entry_points)
+        monkeypatch.setattr(notices, "_notices", [])
+        monkeypatch.setattr(notices, "_listeners", [])
         registry.initiators.cache_clear()
         return asked
 
@@ -72,11 +77,18 @@ def with_plug_ins(monkeypatch):
 
 
 def refusal(with_plug_ins, loaded):
-    with_plug_ins(Point("theirs", loaded))
-    with pytest.raises(RequestError) as error:
-        registry.initiators()
-    assert str(error.value).startswith("plug-in 'theirs' (package.module:Thing) ")
-    return str(error.value)
+    """Return why a plug-in is not used; all else works, and a notice says so once."""
+    with_plug_ins()
+    product = list(registry.initiators())
+    with_plug_ins(Point("theirs", loaded), Point("a", AnyPlot))
+    heard = []
+    notices.listen(heard.append)
+    for _ in range(2):
+        assert list(registry.initiators()) == [*product, "any-plot"]
+    (failed,) = registry.failed_plug_ins()
+    assert failed.words.startswith("plug-in 'theirs' (package.module:Thing) ")
+    assert heard == [f"{failed.words}; everything else works without it"]
+    return failed.words
 
 
 def test_the_initiators_of_the_product(with_plug_ins):
@@ -119,10 +131,12 @@ def test_a_plug_in_may_not_take_the_name_of_an_initiator_of_the_product(with_plu
     assert f"is named '{name}', as another initiator is; rename it" in refusal(with_plug_ins, named(name))
 
 
-def test_two_plug_ins_may_not_have_one_name(with_plug_ins):
+def test_of_two_plug_ins_of_one_name_the_first_counts(with_plug_ins):
     with_plug_ins(Point("first", AnyPlot), Point("second", AnyPlot))
-    with pytest.raises(RequestError, match=r"plug-in 'second' .* is named 'any-plot', as another"):
-        registry.initiators()
+    assert "any-plot" in registry.initiators()
+    (failed,) = registry.failed_plug_ins()
+    assert "plug-in 'second'" in failed.words
+    assert "is named 'any-plot', as another initiator is; rename it" in failed.words
 
 
 @pytest.mark.parametrize("reserved", ["name", "initiator"])
@@ -137,7 +151,8 @@ def test_a_parameter_may_not_have_a_reserved_name(with_plug_ins, reserved):
         ImportError("no module named 'torch'"),
         AttributeError("Thing"),
         SyntaxError("bad"),
-        ZeroDivisionError(),
+        ZeroDivisionError("division"),
+        SystemExit(3),
     ],
 )
 def test_a_plug_in_that_does_not_load_is_named_with_the_reason(with_plug_ins, error):
@@ -181,10 +196,35 @@ def test_a_parameter_may_not_have_the_name_of_what_a_set_entry_offers(with_plug_
     assert taken in refusal(with_plug_ins, named("theirs", taken))
 
 
-def test_a_refused_registry_is_asked_again(with_plug_ins):
-    refusal(with_plug_ins, ImportError("gone"))
-    with_plug_ins()
-    assert set(ALWAYS) <= set(registry.initiators())
+def test_parameters_must_be_of_their_class_and_have_a_schema(with_plug_ins):
+    assert "no class of Parameters" in refusal(
+        with_plug_ins, type("PlugIn", (AnyPlot,), {"name": "theirs", "parameters": dict})
+    )
+    undescribed = create_model(
+        "Undescribed", __base__=Parameters, call=(Callable[[], int], parameter(int, help="no text"))
+    )
+    assert "PydanticInvalidForJsonSchema" in refusal(
+        with_plug_ins, type("PlugIn", (AnyPlot,), {"name": "theirs", "parameters": undescribed})
+    )
+
+
+def test_dimensions_must_be_those_of_plots(with_plug_ins):
+    declared = type("PlugIn", (AnyPlot,), {"name": "theirs", "dimensions": 4})
+    assert "declares 4 dimensions, and there are 2 or 3" in refusal(with_plug_ins, declared)
+
+
+def test_an_initiator_that_could_not_be_loaded_says_why(with_plug_ins):
+    with_plug_ins(Point("theirs", ImportError("no module named 'torch'")))
+    with pytest.raises(RequestError, match=r"^the initiator 'theirs' could not be loaded: plug-in .*'torch'"):
+        registry.initiator("theirs")
+    with pytest.raises(RequestError, match=r"no initiator 'thiers'.*; could not be loaded: theirs$"):
+        registry.initiator("thiers")
+
+
+def test_the_distribution_of_a_plug_in_is_named():
+    distribution = SimpleNamespace(name="their-package", version="1.2")
+    point = SimpleNamespace(name="theirs", value="package.module:Thing", dist=distribution)
+    assert str(guard.Origin.of(point)) == "plug-in 'theirs' (package.module:Thing, their-package 1.2)"
 
 
 def test_an_unknown_initiator_is_answered_with_the_nearest(with_plug_ins):

@@ -259,3 +259,19 @@ def test_a_clustering_that_cannot_be_done_says_why(drive, monkeypatch):
         await user.sees("mode dbscan needs scikit-learn")
 
     drive(journey, "range-doppler", size=(120, 40))
+
+
+def test_a_plug_in_that_fails_says_where(drive, monkeypatch):
+    from algorithms.errors import WorkFailedError
+    from hough_tui.ui.views import look as module
+
+    def fails(*_):
+        raise WorkFailedError("trial 1: plug-in 'theirs': KeyError")
+
+    async def journey(user):
+        await look(user)
+        monkeypatch.setattr(module, "look", fails)
+        await user.press("]")
+        await user.sees("standard: trial 1: plug-in 'theirs': KeyError")
+
+    drive(journey, "course-report", size=(120, 40))
