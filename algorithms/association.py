@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
+from algorithms.errors import RequestError
 from algorithms.kinematics.constant_velocity import Motion, squared_miss
 from algorithms.kinematics.least_squares import Fitting, add_plot, fit
 from algorithms.kinematics.matrices import PLANE
@@ -22,6 +24,12 @@ SEEDS = 128
 REFINEMENTS = 3
 """How often plots are chosen anew about the motion fitted to the plots chosen before."""
 
+MOST_BYTES = 2**30
+"""The most memory that the plots of the tracks of a chunk may take."""
+
+FARTHEST = sys.float_info.max
+"""No gate reaches beyond it, so that a scan without a plot, whose nearest is infinitely far, never passes."""
+
 
 @kernel
 def _motion(along, time, scan, gate):  # type: ignore[no-untyped-def]
@@ -32,6 +40,7 @@ def _motion(along, time, scan, gate):  # type: ignore[no-untyped-def]
     """
     count = len(along)
     stride = (count + SEEDS - 1) // SEEDS if count > SEEDS else 1
+    farthest = min(gate * gate, FARTHEST)
     best_scans, best_squares, best_start, best_speed = 0, np.inf, 0.0, 0.0
     for first in range(0, count, stride):
         for second in range(first + stride, count, stride):
@@ -43,13 +52,13 @@ def _motion(along, time, scan, gate):  # type: ignore[no-untyped-def]
             scans, squares, nearest, current = 0, 0.0, np.inf, np.int64(-1)
             for plot in range(0, count, stride):
                 if scan[plot] != current:
-                    if nearest <= gate * gate:
+                    if nearest <= farthest:
                         scans += 1
                         squares += nearest
                     current, nearest = np.int64(scan[plot]), np.inf
                 miss = along[plot] - start - speed * time[plot]
                 nearest = min(nearest, miss * miss)
-            if nearest <= gate * gate:
+            if nearest <= farthest:
                 scans += 1
                 squares += nearest
             if scans > best_scans or (scans == best_scans and squares < best_squares):
@@ -128,17 +137,18 @@ def _choose(measured, near, motion, gate, chosen):  # type: ignore[no-untyped-de
     """Write the nearest plot of each scan within the gate of a motion; return how many."""
     scan = measured.scan
     count, current, nearest = 0, np.int64(-1), np.inf
+    farthest = min(gate * gate, FARTHEST)
     for plot in near:
         if scan[plot] != current:
-            if nearest <= gate * gate:
+            if nearest <= farthest:
                 count += 1
             current, nearest = np.int64(scan[plot]), np.inf
         miss = squared_miss(motion, measured, plot, PLANE)
         if miss < nearest:
             nearest = miss
-            if miss <= gate * gate:
+            if miss <= farthest:
                 chosen[count] = plot
-    if nearest <= gate * gate:
+    if nearest <= farthest:
         count += 1
     return count
 
@@ -177,6 +187,8 @@ def _plots_of_line(measured, line, reach, beside):  # type: ignore[no-untyped-de
     state[1, 0], state[1, 1] = -speed * line.sine, speed * line.cosine
     held = _choose(measured, near, Motion(state[0], state[1], 0.0), wide, beside.chosen)
     for _ in range(REFINEMENTS):
+        if held == 0:
+            break
         motion, is_settled = _fitted_motion(measured, beside.chosen[:held], beside.fitting)
         if not is_settled:
             break
@@ -213,23 +225,25 @@ def associate(chunk: PlotChunk, tracks: TrackChunk, half_width: float, gate: flo
     tracks : lines
     half_width : greatest distance of a plot from the line
     gate : greatest distance of a plot from the fitted motion
+
+    Raises
+    ------
+    RequestError
+        Where the plots of all tracks would need more than `MOST_BYTES`.
     """
     # A scan number is no bound for the width: recordings may begin anywhere.
-    plots = np.full((len(tracks.rho), _most_scans(chunk)), -1, np.int64)
+    scans = chunk.most_scans
+    size = 8 * len(tracks.rho) * scans
+    if size > MOST_BYTES:
+        raise RequestError(
+            f"{len(tracks.rho):,} tracks, each with a plot of up to {scans:,} scans, would need "
+            f"{size / 2**30:,.1f} GiB; the limit is {MOST_BYTES / 2**30:g} GiB; ask for more "
+            "votes, or give maxima"
+        )
+    plots = np.full((len(tracks.rho), scans), -1, np.int64)
     _associate(
         Measured.of(chunk, None, 2), chunk.offsets, tracks.offsets,
         np.cos(tracks.theta), np.sin(tracks.theta), tracks.rho,
         Reach(float(half_width), float(gate)), Beside.of(max(1, chunk.largest)), plots,
     )  # fmt: skip
     return replace(tracks, plots=plots)
-
-
-def _most_scans(chunk: PlotChunk) -> int:
-    """Return the greatest number of scans with plots that one trial has, at least 1."""
-    if len(chunk.scan) == 0:
-        return 1
-    begins = np.ones(len(chunk.scan), dtype=np.int64)
-    begins[1:] = chunk.scan[1:] != chunk.scan[:-1]
-    starts = chunk.offsets[:-1][np.diff(chunk.offsets) > 0]
-    begins[starts] = 1
-    return int(np.add.reduceat(begins, starts).max())

@@ -58,10 +58,13 @@ class Kernel:
 
         _register_kernels()
         dispatcher = numba.njit(nogil=True, error_model="numpy")(self.function)
+        if dispatcher is self.function:
+            return dispatcher
+        _compile_once_for_literals(dispatcher)
         # The folder's name covers the sources of the kernels that this one calls: numba would
         # compare a cached kernel with its own file alone.
         folder = kernel_folder(self.function.__module__.partition(".")[0])
-        if folder is not None and dispatcher is not self.function:
+        if folder is not None:
             dispatcher._cache = OverloadCache(folder, self.function)
         return dispatcher
 
@@ -82,6 +85,17 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     is the one written (no `fastmath`), so results do not depend on the vector width.
     """
     return Kernel(function)
+
+
+def _compile_once_for_literals(dispatcher: Any) -> None:
+    """Have kernels that call this one take a literal number for a number of its type.
+
+    Numba would compile it for the 0 that a counter begins with, and again for the counter.
+    """
+    from numba import types
+
+    template = dispatcher.get_call_template
+    dispatcher.get_call_template = lambda given, named: template(tuple(map(types.unliteral, given)), named)
 
 
 @cache

@@ -67,6 +67,17 @@ class PlotChunk:
         """Number of plots of the largest trial."""
         return int(np.diff(self.offsets).max(initial=0))
 
+    @property
+    def most_scans(self) -> int:
+        """Greatest number of scans with plots that one trial has, at least 1."""
+        if len(self.scan) == 0:
+            return 1
+        begins = np.ones(len(self.scan), dtype=np.int64)
+        begins[1:] = self.scan[1:] != self.scan[:-1]
+        starts = self.offsets[:-1][np.diff(self.offsets) > 0]
+        begins[starts] = 1
+        return int(np.add.reduceat(begins, starts).max())
+
     def trial(self, index: int) -> Plots:
         """Return the plots of one trial (views, not copies)."""
         rows = slice(self.offsets[index], self.offsets[index + 1])

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from algorithms.compiled import kernel
+from algorithms.rounding import floored
 from algorithms.streams import uniform_pair
 from scenarios.conversion import to_polar
 from scenarios.plot_rows import put_polar, put_variance
@@ -54,7 +55,7 @@ def sort_batch(clutter, streams, trial, scans, begins, order, scan_of):  # type:
         begins[source] = 0
         for plot in range(number):
             chance, _ = uniform_pair(streams.seed, 2 * plot, 0, stream, trial)
-            scan_of[plot] = min(np.int64(chance * scans), scans - 1)
+            scan_of[plot] = min(floored(chance * scans), scans - 1)
             begins[source, scan_of[plot] + 1] += 1
         for scan in range(scans):
             begins[source, scan + 1] += begins[source, scan]

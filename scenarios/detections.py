@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
+from algorithms.rounding import floored
 from algorithms.streams import normal_pair, uniform_pair
 from algorithms.target_states import TargetStates
 from scenarios.conversion import polar
@@ -91,7 +92,8 @@ class ResolvedWorld:
             azimuths[:, 0].copy(),
             spans,
             np.array([resolution.doppler_cell for resolution in resolutions]),
-            np.ceil(spans / widths - 1e-9).astype(np.int64),
+            # A beam may be wider than the sector by any factor; it is one beam then.
+            np.maximum(np.ceil(spans / widths - 1e-9), 1.0).astype(np.int64),
             np.array([resolution.doppler_cells for resolution in resolutions], np.int64),
             np.array([sensor.noise[:2] for sensor in sensors]),
         )
@@ -185,14 +187,14 @@ def _beam(azimuth, cells, sensor):  # type: ignore[no-untyped-def]
     beams, span = cells.beams[sensor], cells.azimuth_span[sensor]
     if turned > span:
         return beams - 1 if turned - span <= 2.0 * math.pi - turned else np.int64(0)
-    return min(np.int64(turned / cells.beam_width[sensor]), beams - 1)
+    return min(floored(turned / cells.beam_width[sensor]), beams - 1)
 
 
 @kernel
 def _folded(speed, cells, sensor):  # type: ignore[no-untyped-def]
-    """Return the Doppler cell of a radial speed."""
+    """Return the Doppler cell of a radial speed, as a float: nothing bounds it before it is folded."""
     count = cells.doppler_cells[sensor]
-    return np.int64(math.floor(speed / cells.doppler_cell[sensor] + 0.5 * count)) % count
+    return np.floor(speed / cells.doppler_cell[sensor] + 0.5 * count) % count
 
 
 @kernel
@@ -225,8 +227,8 @@ def _points(plots, velocity, measurement, cells, extents, streams):  # type: ign
             if target < 0:
                 u, v = uniform_pair(streams.seed, stray, count, CLUTTER_POINTS + SENSOR * sensor, trial)
                 stray += 1
-                point_of[row, 0] = math.floor(along / cells.range_cell[sensor])
-                point_of[row, 1] = np.int64(u * cells.doppler_cells[sensor])
+                point_of[row, 0] = np.floor(along / cells.range_cell[sensor])
+                point_of[row, 1] = np.floor(u * cells.doppler_cells[sensor])
                 point_of[row, 2] = _amplitude(v, 1.0)
                 beam_of[row] = _beam(azimuth, cells, sensor)
                 parent[row] = plot
@@ -245,7 +247,7 @@ def _points(plots, velocity, measurement, cells, extents, streams):  # type: ign
                 x, y = normal_pair(streams.seed, POINTS + 2 * point, count, stream, trial)
                 chance, _ = uniform_pair(streams.seed, POINTS + 2 * point + 1, count, stream, trial)
                 y = correlation * x + math.sqrt(1.0 - correlation * correlation) * y
-                point_of[row, 0] = math.floor((along + r_spread * x) / cells.range_cell[sensor])
+                point_of[row, 0] = np.floor((along + r_spread * x) / cells.range_cell[sensor])
                 point_of[row, 1] = _folded(speed + d_spread * y, cells, sensor)
                 point_of[row, 2] = _amplitude(chance, scale)
                 beam_of[row] = beam

@@ -7,8 +7,18 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
+from algorithms.clustering.points import FARTHEST
 from algorithms.context import Box, Context, Unit
-from algorithms.parameters import Count, Declared, Dimension, Name, Positive, missing_either, parameter
+from algorithms.parameters import (
+    LARGEST,
+    Count,
+    Declared,
+    Dimension,
+    Name,
+    Positive,
+    missing_either,
+    parameter,
+)
 from scenarios.clutter import MOST_PLOTS, AnyClutter, Clutter, Region
 from scenarios.conversion import converted
 from scenarios.entries import WITHOUT_CLUSTERING, AnyClusteringEntry, Entry, InitiatorEntry
@@ -19,6 +29,9 @@ from scenarios.targets import Target
 
 MOST_STEPS = 1_000_000
 """The most intervals in which the noise of a motion may be drawn."""
+
+MOST_DEVIATIONS = 10.0
+"""No normal number that is drawn is farther from the mean, in standard deviations."""
 
 
 class Scenario(Declared):
@@ -73,6 +86,31 @@ class Scenario(Declared):
                     f"targets[{index}] has process noise, drawn in each of {steps:,.0f} intervals until the "
                     f"last scan; the limit is {MOST_STEPS:,}; give a longer interval or an earlier last scan"
                 )
+        return self
+
+    @model_validator(mode="after")
+    def _stays_within_bounds(self) -> Self:
+        """Refuse times, places and cells that follow from numbers within their bounds, and lie beyond."""
+        last = self.last_time
+        if last > LARGEST:
+            raise ValueError(f"the last scan is at {last:g} s; no time may be greater than {LARGEST:g} s")
+        for index, target in enumerate(self.targets):
+            end = max(map(abs, target.ends(self.interval, last)[1]))
+            if end > LARGEST:
+                raise ValueError(
+                    f"targets[{index}] has a coordinate of {end:g} in its last scan; none may be greater "
+                    f"than {LARGEST:g}; give a lower speed, or fewer scans"
+                )
+        for sensor in self.sensors:
+            resolution = sensor.resolution if isinstance(sensor, PolarSensor) else None
+            if isinstance(sensor, PolarSensor) and resolution is not None:
+                spread = max((one.extended.range_spread for one in self.targets if one.extended), default=0.0)
+                farthest = sensor.range[1] + MOST_DEVIATIONS * (spread + sensor.sigma_range)
+                if farthest / resolution.range_cell > FARTHEST:
+                    raise ValueError(
+                        f"range_cell {resolution.range_cell:g} is given, and points lie up to {farthest:.3g} "
+                        f"far; the limit is {FARTHEST:g} cells; give a larger range_cell"
+                    )
         return self
 
     @model_validator(mode="after")
@@ -193,7 +231,8 @@ class Scenario(Declared):
         if self.further_sensors:
             first = min(sensor.first_scan for sensor in self.sensors)
             scans *= len(self.sensors)
-            interval = (self.last_time - first) / (scans - 1)
+            # One scan each, all at one time, leave no time between them.
+            interval = (self.last_time - first) / (scans - 1) or interval
         return Context(
             scans,
             interval,

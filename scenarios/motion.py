@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag
 
-from algorithms.parameters import Declared, Dimension, NotNegative, Number, parameter, with_default
+from algorithms.parameters import LEAST, Declared, Dimension, NotNegative, Number, parameter, with_default
 from scenarios.sensors import Place
 
 Array = NDArray[np.float64]
@@ -161,12 +161,12 @@ class Waypoints(Motion):
 
     def refusal(self, position: Place, velocity: Place) -> str | None:
         """Return which leg has no length, or that there is no speed."""
-        if not any(velocity):
+        if math.hypot(*velocity) < LEAST:
             return "velocity is zero; the speed of a motion through waypoints must be greater than 0"
         names = ["position", *(f"motion.points[{index}]" for index in range(len(self.points)))]
         places = [position, *self.points]
         for index, (place, following) in enumerate(pairwise(places)):
-            if place == following:
+            if math.dist(place, following) < LEAST:
                 return f"{names[index + 1]} is where {names[index]} is; each leg must have a length"
         return None
 

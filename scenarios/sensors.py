@@ -12,8 +12,11 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from algorithms.context import Box
 from algorithms.parameters import (
+    LARGEST,
+    LEAST,
     Count,
     Declared,
+    Deviation,
     Dimension,
     Fraction,
     NotNegative,
@@ -25,10 +28,10 @@ from scenarios.conversion import converted, polar
 
 
 def _rising(bounds: tuple[float, float]) -> tuple[float, float]:
-    if bounds[0] >= bounds[1]:
+    if bounds[1] - bounds[0] < LEAST:
         raise ValueError(
             f"[{bounds[0]:g}, {bounds[1]:g}] is given, which spans nothing; "
-            "the first bound must be less than the second"
+            f"the first bound must be less than the second, by {LEAST:g} or more"
         )
     return bounds
 
@@ -65,11 +68,9 @@ class CartesianSensor(Sensor):
     """A sensor that measures x, y and, in space, z with independent gaussian noise."""
 
     kind: Literal["cartesian"] = parameter("cartesian", help="how the sensor measures")
-    sigma: NotNegative | tuple[NotNegative, NotNegative] | tuple[NotNegative, NotNegative, NotNegative] = (
-        parameter(
-            dimension=Dimension.LENGTH,
-            help="standard deviation of the noise, one for all axes or [on x, on y, in space on z]",
-        )
+    sigma: Deviation | tuple[Deviation, Deviation] | tuple[Deviation, Deviation, Deviation] = parameter(
+        dimension=Dimension.LENGTH,
+        help="standard deviation of the noise, one for all axes or [on x, on y, in space on z]",
     )
 
     def axes(self, dimensions: int) -> tuple[float, ...]:
@@ -118,13 +119,13 @@ class PolarSensor(Sensor):
 
     kind: Literal["polar"] = parameter("polar", help="how the sensor measures")
     position: Place = parameter((0.0, 0.0), dimension=Dimension.LENGTH, help="where it stands")
-    sigma_range: NotNegative = parameter(
+    sigma_range: Deviation = parameter(
         dimension=Dimension.LENGTH, help="standard deviation of the noise on range"
     )
-    sigma_azimuth_deg: NotNegative = parameter(
+    sigma_azimuth_deg: Deviation = parameter(
         dimension=Dimension.ANGLE, help="standard deviation of the noise on azimuth, degrees"
     )
-    sigma_elevation_deg: NotNegative | None = parameter(
+    sigma_elevation_deg: Deviation | None = parameter(
         None,
         dimension=Dimension.ANGLE,
         help="standard deviation of the noise on elevation, degrees; none: it measures in the plane",
@@ -151,6 +152,11 @@ class PolarSensor(Sensor):
         if self.azimuth_deg[1] - self.azimuth_deg[0] > 360.0:
             span = self.azimuth_deg[1] - self.azimuth_deg[0]
             raise ValueError(f"azimuth_deg spans {span:g}°; it may span 360° at the most")
+        farthest = max(map(abs, self.position)) + self.range[1]
+        if farthest > LARGEST:
+            raise ValueError(
+                f"position and range reach {farthest:g} far; no coordinate may be greater than {LARGEST:g}"
+            )
         if self.resolution is not None and self.sigma_elevation_deg is not None:
             raise ValueError("resolution is given with sigma_elevation_deg; it needs a sensor in the plane")
         if self.sigma_elevation_deg is None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
 from algorithms.plots import PlotChunk
+from algorithms.rounding import floored
 from algorithms.scoring.matching import Truth
 from algorithms.target_states import TargetStates
 from scenarios.clutter_plots import clutter_numbers, put_clutter, sort_batch
@@ -84,7 +85,7 @@ def _merged(own, clutter, measurement, streams):  # type: ignore[no-untyped-def]
             origin[first:row] = -1
             for index in range(own.begins[k * scans + scan], own.begins[k * scans + scan + 1]):
                 # At a random place of its scan, so that no order tells targets from clutter.
-                at = first + np.int64(own.rank[index] * (row - first + 1))
+                at = min(first + floored(own.rank[index] * (row - first + 1)), row)
                 _move(plots, covariance, origin, at, row)
                 origin[at] = own.target[index]
                 plots[at] = own.position[index]

@@ -121,7 +121,7 @@ def _is_in_sector(measured, limits, sensor):  # type: ignore[no-untyped-def]
         return False
     if len(measured) > 2 and not limits[sensor, 2, 0] <= measured[2] <= limits[sensor, 2, 1]:
         return False
-    turns = math.ceil((limits[sensor, 1, 0] - measured[1]) / (2.0 * math.pi))
+    turns = np.ceil((limits[sensor, 1, 0] - measured[1]) / (2.0 * math.pi))
     return measured[1] + 2.0 * math.pi * turns <= limits[sensor, 1, 1]
 
 

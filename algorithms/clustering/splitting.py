@@ -93,7 +93,8 @@ def _widest_gap(values, order, centre):  # type: ignore[no-untyped-def]
         away = abs(0.5 * (low + high) - centre)
         if (high - low) * SLACK >= widest and away < nearest - ROUNDING * widest:
             below, nearest = low, away
-    return widest, below
+    # Where sums overflow no neighbours are as far apart as the widest gap says: there is no place to cut.
+    return widest if nearest < np.inf else 0.0, below
 
 
 @kernel

@@ -13,7 +13,17 @@ from pydantic import Field
 from algorithms.context import Context
 from algorithms.errors import RequestError
 from algorithms.hough.lines import normal_form
-from algorithms.parameters import Auto, Count, Declared, Dimension, Fraction, Number, Positive, parameter
+from algorithms.parameters import (
+    LEAST,
+    Auto,
+    Count,
+    Declared,
+    Dimension,
+    Fraction,
+    Number,
+    Positive,
+    parameter,
+)
 
 ACCUMULATOR_LIMIT = 2**30
 """The greatest size of an accumulator, in bytes."""
@@ -192,7 +202,8 @@ class GridParameters(Declared):
                 "give the region, or the three"
             )
         # A region that is one point has no reach; its one line of plots still needs a cell.
-        return context.region.farthest(origin) or 1.0
+        reach = context.region.farthest(origin)
+        return reach if reach >= LEAST else 1.0
 
     def _span(self, context: Context, origin: tuple[float, float], rho_min: float) -> float:
         reach = self._reach(context, origin)

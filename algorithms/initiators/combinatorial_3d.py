@@ -33,7 +33,7 @@ LEAST_VOTES = {"sound": 3, "document": 2}
 class CombinatorialParameters(MotionParameters):
     """The parameters of `combinatorial-3d`."""
 
-    window_deg: Annotated[Positive, Field(lt=180)] | Auto = parameter(
+    window_deg: Annotated[Positive, Field(ge=0.01, lt=180)] | Auto = parameter(
         "auto",
         dimension=Dimension.ANGLE,
         help="width Δθ of a window of votes",
@@ -274,9 +274,9 @@ class Combinatorial3D(SpaceInitiator):
             parameters.mode == "document",
         )
 
-    def rule(self, context: Context, parameters: CombinatorialParameters) -> TrackRule:
+    def rule(self, parameters: CombinatorialParameters, most: int) -> TrackRule:
         """Return what makes plots a track; in the document's mode nothing is allowed for noise."""
-        rule = super().rule(context, parameters)
+        rule = super().rule(parameters, most)
         if parameters.mode == "sound":
             return rule
         return rule._replace(gate=rule.gate._replace(allowance=0.0))
@@ -298,7 +298,7 @@ class Combinatorial3D(SpaceInitiator):
         """
         measured = self.measured(plots.chunk(), context)
         windows = self.sieve(context, parameters)
-        pairs, tried = pairs_within_reach(measured, self.rule(context, parameters).gate, STEPS, SPACE)
+        pairs, tried = pairs_within_reach(measured, self.rule(parameters, LEAST_PLOTS).gate, STEPS, SPACE)
         groups = _groups(len(plots), pairs, windows.is_document)
         theta, distance, confirmed = _votes(measured.position, pairs, groups, windows)
         window = windows.width, windows.height

@@ -12,9 +12,13 @@ from pydantic import Field
 
 from algorithms.compiled import kernel
 from algorithms.context import Context
+from algorithms.errors import RequestError
 from algorithms.initiators.in_space import MotionParameters, SpaceInitiator
 from algorithms.parameters import Auto, Count, Dimension, Positive, parameter
+from algorithms.plots import PlotChunk
+from algorithms.rounding import floored
 from algorithms.space.trial_loop import fitted_tracks, trial_loop
+from algorithms.tracks import TrackChunk
 
 Array = NDArray[np.float64]
 
@@ -23,6 +27,9 @@ CELLS_ACROSS = 64
 
 NOISE_IN_CELL = 3.0
 """The least width of a default cell in standard deviations: with few plots their extent is no measure."""
+
+MOST_CELLS = 2**30
+"""The most cells across the plots of a batch: row and column of a cell are one whole number of 64 bits."""
 
 
 class Hough3DParameters(MotionParameters):
@@ -114,7 +121,8 @@ def _fullest_of(position, middle, left, around, direction, cell, half, keys, pla
             place[axis] = position[left[k], axis] - middle[axis]
         first, second = across(around[direction], place)
         # The middle of the plots is the middle of a cell: a line through it shall not lie at an edge.
-        row, column = np.int64(math.floor(first / cell + 0.5)), np.int64(math.floor(second / cell + 0.5))
+        row = min(max(floored(first / cell + 0.5), -half), half - 1)
+        column = min(max(floored(second / cell + 0.5), -half), half - 1)
         keys[k] = (row + half) * width + column + half
     cells = keys[: len(left)]
     cells.sort()
@@ -145,7 +153,12 @@ def _fullest_cell(position, middle, left, around, cell, half, bounds, keys, plac
 
 @kernel
 def _line_through(position, rows, count, centre, direction):  # type: ignore[no-untyped-def]
-    """Write the orthogonal least-squares line through some plots: their mean and main axis."""
+    """Write the orthogonal least-squares line through some plots: their mean and main axis.
+
+    Returns
+    -------
+    whether there is one: the squares of very distant plots are no finite numbers
+    """
     centre[:] = 0.0
     for k in range(count):
         for axis in range(3):
@@ -157,9 +170,12 @@ def _line_through(position, rows, count, centre, direction):  # type: ignore[no-
                 spread[first, second] += (position[rows[k], first] - centre[first]) * (
                     position[rows[k], second] - centre[second]
                 )
+    if not np.isfinite(spread.sum()):
+        return False
     _, vectors = np.linalg.eigh(spread)
     for axis in range(3):
         direction[axis] = vectors[axis, 2]
+    return True
 
 
 @kernel
@@ -191,7 +207,7 @@ def _lines(position, covariance, around, cell, most, least, usable):  # type: ig
     for axis in range(3):
         middle[axis] = 0.5 * (lower[axis] + upper[axis])
         extent = max(extent, upper[axis] - lower[axis])
-    if extent == 0.0:
+    if not extent > 0.0:
         usable[:] = True
         return
     if cell <= 0.0:
@@ -200,7 +216,7 @@ def _lines(position, covariance, around, cell, most, least, usable):  # type: ig
             noise = max(noise, covariance[plot, 0, 0] + covariance[plot, 1, 1] + covariance[plot, 2, 2])
         cell = max(extent / CELLS_ACROSS, NOISE_IN_CELL * math.sqrt(noise))
     # No plot is farther from the middle than half the diagonal of its box.
-    half = int(0.5 * math.sqrt(3.0) * extent / cell) + 2
+    half = min(floored(0.5 * math.sqrt(3.0) * extent / cell) + 2, MOST_CELLS)
     left = np.arange(count)
     keys, bounds = np.empty(count, np.int64), np.empty(len(around), np.int64)
     rows, centre, direction = np.empty(count, np.int64), np.empty(3), np.empty(3)
@@ -222,11 +238,11 @@ def _lines(position, covariance, around, cell, most, least, usable):  # type: ig
             if abs(first / cell - row) < 1.0 and abs(second / cell - column) < 1.0:
                 rows[found] = still
                 found += 1
-        _line_through(position, rows, found, centre, direction)
-        found = _near_line(position, left, centre, direction, cell, rows)
-        if found < 2:
+        if not _line_through(position, rows, found, centre, direction):
             return
-        _line_through(position, rows, found, centre, direction)
+        found = _near_line(position, left, centre, direction, cell, rows)
+        if found < 2 or not _line_through(position, rows, found, centre, direction):
+            return
         found = _near_line(position, left, centre, direction, cell, rows)
         if found == 0:
             return
@@ -295,10 +311,32 @@ class Hough3D(SpaceInitiator):
 
     tracks_of_trials = trial_loop(_usable_plots, fitted_tracks)
 
+    def initiate_chunk(self, chunk: PlotChunk, context: Context, parameters: Hough3DParameters) -> TrackChunk:
+        """Return the tracks of each trial, with their plots and states; see `SpaceInitiator`.
+
+        Raises
+        ------
+        RequestError
+            Also where the cells are too narrow for the extent of the plots.
+        """
+        if parameters.cell != "auto" and len(chunk.position):
+            _check_cell(float(parameters.cell), float(np.ptp(chunk.position, axis=0).max()))
+        return super().initiate_chunk(chunk, context, parameters)
+
     def sieve(self, context: Context, parameters: Hough3DParameters) -> Lines:
         """Return which lines are sought."""
         cell = 0.0 if parameters.cell == "auto" else float(parameters.cell)
         return Lines(directions(parameters.tessellation), cell, parameters.lines, int(parameters.plots))
+
+
+def _check_cell(cell: float, extent: float) -> None:
+    # The diagonal of the box around the plots, and the cells at its ends.
+    across = math.sqrt(3.0) * extent / cell + 4.0
+    if across > MOST_CELLS:
+        raise RequestError(
+            f"hough-3d: cell {cell:g} is given, and the plots extend over {extent:g}, which are {across:.3g} "
+            f"cells; the limit is {MOST_CELLS:,}; give a larger cell"
+        )
 
 
 INITIATOR = Hough3D()

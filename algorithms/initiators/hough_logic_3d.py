@@ -28,7 +28,7 @@ class HoughLogicParameters(MotionParameters):
 
     first_plane: Plane = parameter("xz", help="one of the planes on which the plots are projected")
     second_plane: Plane = parameter("yz", help="the other plane")
-    cell_deg: Annotated[Positive, Field(le=90)] = parameter(
+    cell_deg: Annotated[Positive, Field(ge=0.01, le=90)] = parameter(
         15.0, dimension=Dimension.ANGLE, help="height Δθ of a cell of the accumulator of a plane"
     )
     cell_length: Positive | Auto = parameter(
@@ -68,23 +68,24 @@ class HoughLogicParameters(MotionParameters):
 @kernel
 def _pass_gate(position, station, across, up, rows, step, length, votes, passed):  # type: ignore[no-untyped-def]
     """Set where a plot lies in a cell of a plane's accumulator with at least so many votes."""
-    farthest = 0.0
-    for plot in range(len(position)):
-        x, y = position[plot, across] - station[across], position[plot, up] - station[up]
-        farthest = max(farthest, math.sqrt(x * x + y * y))
-    reach = int(farthest / length) + 1
-    counts = np.zeros(2 * reach, np.int64)
-    columns = np.empty(len(position), np.int64)
+    count = len(position)
+    columns = np.empty(count)
     for row in range(rows):
-        theta = (row + 0.5) * step
-        counts[:] = 0
-        for plot in range(len(position)):
+        cosine, sine = math.cos((row + 0.5) * step), math.sin((row + 0.5) * step)
+        for plot in range(count):
             x, y = position[plot, across] - station[across], position[plot, up] - station[up]
-            columns[plot] = math.floor((x * math.cos(theta) + y * math.sin(theta)) / length) + reach
-            counts[columns[plot]] += 1
-        for plot in range(len(position)):
-            if counts[columns[plot]] >= votes:
-                passed[plot] = True
+            columns[plot] = np.floor((x * cosine + y * sine) / length)
+        # Sorted, not counted cell by cell: one distant plot would ask for any number of cells.
+        order = np.argsort(columns)
+        begin = 0
+        while begin < count:
+            end = begin + 1
+            while end < count and columns[order[end]] == columns[order[begin]]:
+                end += 1
+            if end - begin >= votes:
+                for k in range(begin, end):
+                    passed[order[k]] = True
+            begin = end
 
 
 class CoarseCells(NamedTuple):
@@ -162,9 +163,9 @@ class HoughLogic3D(SpaceInitiator):
             int(parameters.plots),
         )
 
-    def rule(self, context: Context, parameters: HoughLogicParameters) -> TrackRule:
+    def rule(self, parameters: HoughLogicParameters, most: int) -> TrackRule:
         """Return what makes plots a track: with `speed_gate: planes` the least speed in both planes, too."""
-        rule = super().rule(context, parameters)
+        rule = super().rule(parameters, most)
         return rule._replace(planes=self._planes(parameters)) if parameters.speed_gate == "planes" else rule
 
     def confirming_plots(self, parameters: HoughLogicParameters) -> int:

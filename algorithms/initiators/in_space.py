@@ -18,7 +18,7 @@ from algorithms.initiators.speeds import SpeedParameters
 from algorithms.kinematics.gates import SpeedGate
 from algorithms.kinematics.measured import Measured
 from algorithms.kinematics.noise import covariances
-from algorithms.kinematics.track_search import MOST_FOUND, Candidates, TrackRule
+from algorithms.kinematics.track_search import Candidates, TrackRule
 from algorithms.parameters import Auto, Count, Dimension, Fraction, NotNegative, parameter
 from algorithms.plots import PlotChunk
 from algorithms.space.trial_loop import LEAST_PLOTS
@@ -70,10 +70,9 @@ class SpaceInitiator(ChunkInitiator):
     def sieve(self, context: Context, parameters: Any) -> NamedTuple:
         """Return what takes clutter away, as the kernel of the initiator takes it."""
 
-    def rule(self, context: Context, parameters: Any) -> TrackRule:
-        """Return what makes plots a track."""
+    def rule(self, parameters: Any, most: int) -> TrackRule:
+        """Return what makes plots a track of at most so many."""
         gate = SpeedGate(parameters.speed_min, parameters.speed_max, float(parameters.allowance))
-        most = max(context.scans, LEAST_PLOTS)
         return TrackRule.of(gate, parameters.plots, parameters.confidence, most, self.dimensions)
 
     def kernel_of(self, parameters: Any) -> Callable[..., Any]:
@@ -112,15 +111,16 @@ class SpaceInitiator(ChunkInitiator):
         RequestError
             Where plots have no z, their noise is not known, or too many tracks fit them.
         """
-        rule = self.rule(context, parameters)
+        # A scan number is no bound: recordings may begin anywhere.
+        rule = self.rule(parameters, max(chunk.most_scans, LEAST_PLOTS))
+        candidates = Candidates.of(rule.most, self.dimensions)
         ends, table, count, tried, left, is_full = self.kernel_of(parameters)(
-            self.measured(chunk, context), chunk.offsets, rule, self.sieve(context, parameters),
-            Candidates.of(rule.most, self.dimensions),
-        )  # fmt: skip
+            self.measured(chunk, context), chunk.offsets, rule, self.sieve(context, parameters), candidates
+        )
         if is_full:
             raise RequestError(
-                f"{self.name}: more than {MOST_FOUND:,} tracks fit the plots of one batch; ask for more "
-                "`plots`, narrow speed_min and speed_max, or take fewer scans"
+                f"{self.name}: more than {len(candidates.plots):,} tracks fit the plots of one batch; "
+                "ask for more `plots`, narrow speed_min and speed_max, or take fewer scans"
             )
         plots, states = table.plots[:count], table.states.select(slice(count))
         theta, rho = states.lines

@@ -18,6 +18,9 @@ Rows = NDArray[np.int64]
 MOST_FOUND = 20_000
 """The most tracks of a batch that are compared with one another."""
 
+MOST_ROOM = 2**27
+"""The most plots of all these tracks together, a GiB of them: of long tracks fewer are compared."""
+
 
 class TrackRule(NamedTuple):
     """What makes plots a track of constant velocity.
@@ -51,8 +54,9 @@ class Candidates(NamedTuple):
 
     Attributes
     ----------
-    plots : int64 (`MOST_FOUND`, most plots), rows of the plots of each track, −1 beyond the last
-    squares : float64 (`MOST_FOUND`,), χ² of each
+    plots : int64 (most tracks, most plots), rows of the plots of each track, −1 beyond the last; there
+        are `MOST_FOUND` rows, or as many as `MOST_ROOM` leaves
+    squares : float64 (most tracks,), χ² of each
     path, following : int64 (most plots,), the track on the way, and the next pair of each of its plots
     fitting : `Fitting`, with a row of sums for each number of plots
     """
@@ -66,9 +70,10 @@ class Candidates(NamedTuple):
     @classmethod
     def of(cls, most: int, dimensions: int) -> Candidates:
         """Return space for tracks of at most so many plots."""
+        room = min(MOST_FOUND, max(MOST_ROOM // most, 1))
         return cls(
-            np.empty((MOST_FOUND, most), np.int64),
-            np.empty(MOST_FOUND),
+            np.empty((room, most), np.int64),
+            np.empty(room),
             np.empty(most, np.int64),
             np.empty(most, np.int64),
             Fitting(Sums.of(most + 1, dimensions), Fit.of(dimensions)),

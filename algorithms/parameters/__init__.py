@@ -6,11 +6,14 @@ are derived from that field.
 """
 
 from algorithms.parameters.declaration import (
+    LARGEST,
     LARGEST_WHOLE,
+    LEAST,
     NAME,
     Auto,
     Count,
     Declared,
+    Deviation,
     Dimension,
     Flag,
     Fraction,
@@ -29,6 +32,7 @@ from algorithms.parameters.validation import (
     MISSING_EITHER,
     FieldError,
     Problem,
+    checked,
     join,
     lines,
     missing_either,
@@ -39,12 +43,15 @@ from algorithms.parameters.validation import (
 from algorithms.parameters.words import listed, nearest, shortened, unknown
 
 __all__ = [
+    "LARGEST",
     "LARGEST_WHOLE",
+    "LEAST",
     "MISSING_EITHER",
     "NAME",
     "Auto",
     "Count",
     "Declared",
+    "Deviation",
     "Dimension",
     "FieldError",
     "Flag",
@@ -58,6 +65,7 @@ __all__ = [
     "Positive",
     "Problem",
     "Whole",
+    "checked",
     "dotted",
     "field_at",
     "fields_at",

@@ -7,15 +7,35 @@ from collections.abc import Callable, Mapping
 from enum import StrEnum
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic_core import PydanticCustomError
 
 from algorithms.context import Context
 
+LARGEST, LEAST = 1e12, 1e-12
+"""Bounds of every number, in whatever unit, and of those that are greater than 0.
+
+No radar has a coordinate, a cell, a spread or a time beyond them. The numbers within them can be squared,
+multiplied and divided several times over without becoming infinite or 0.
+"""
+
 # Strict: a number is never read out of text or out of true and false.
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
-NotNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-LARGEST, le=LARGEST)]
+Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=LEAST, le=LARGEST)]
+NotNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST)]
 Fraction = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=1)]
+
+
+def _is_no_dust(value: float) -> float:
+    if 0.0 < value < LEAST:
+        raise PydanticCustomError("dust", "0 or at least {least}", {"least": f"{LEAST:g}"})
+    return value
+
+
+# Noise may be none, but is divided by where there is some.
+Deviation = Annotated[
+    float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST), AfterValidator(_is_no_dust)
+]
 # Kernels take whole numbers of a fixed width.
 LARGEST_WHOLE = 2**31 - 1
 Integer = Annotated[int, Field(strict=True, ge=-LARGEST_WHOLE, le=LARGEST_WHOLE)]

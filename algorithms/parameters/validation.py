@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic_core import PydanticCustomError
 
 from algorithms.errors import RequestError
+from algorithms.parameters.declaration import LARGEST, LEAST
 from algorithms.parameters.paths import Path, dotted, fields_at, path_in, value_at
 from algorithms.parameters.words import shortened, unknown
 
@@ -71,6 +72,27 @@ def validated(model: type[Model], data: Any, what: str) -> Model:
     except ValidationError as error:
         found = problems(error, model, data)
         raise RequestError(lines([f"{what}: {join(problem)}" for problem in found], what)) from None
+
+
+def checked(value: Any, declared: Any, what: str) -> Any:
+    """Return a value that a declared type allows, such as that of an option.
+
+    Parameters
+    ----------
+    value : as it was given
+    declared : the type with its bounds, such as `Positive`
+    what : what errors call it
+
+    Raises
+    ------
+    RequestError
+        Where the type does not allow it.
+    """
+    try:
+        return TypeAdapter(declared).validate_python(value)
+    except ValidationError as error:
+        allowed = dict.fromkeys(_allowed(detail) for detail in error.errors(include_url=False))
+        raise RequestError(f"{what} {_shown(value)}: it must be {' or '.join(allowed)}") from None
 
 
 def join(problem: Problem) -> str:
@@ -174,12 +196,17 @@ _ALLOWED = {
 
 def _allowed(detail: Any) -> str:
     words = _ALLOWED.get(detail["type"])
+    if detail.get("ctx", {}).get("ge") == LEAST and detail["input"] <= 0:
+        # The least of positive numbers is news only to those who came close to it.
+        return "greater than 0"
     context = {name: _written(value) for name, value in detail.get("ctx", {}).items()}
     return words.format(**context) if words else str(detail["msg"])
 
 
 def _written(value: Any) -> Any:
-    return f"{value:.15g}" if isinstance(value, float) else value
+    if not isinstance(value, float):
+        return value
+    return f"{value:.15g}" if abs(value) < LARGEST else f"{value:g}"
 
 
 def replaced(model: Model, values: Mapping[Path, Any]) -> Model:

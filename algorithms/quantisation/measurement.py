@@ -12,6 +12,7 @@ from algorithms.compiled import kernel
 from algorithms.hough.grid import Grid
 from algorithms.hough.voting import FIRST, GridArrays, vote
 from algorithms.plots import PlotChunk
+from algorithms.rounding import floored
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
@@ -83,10 +84,10 @@ def _count(x, y, offsets, shifts, lines, angles, fixed, accumulator, columns, co
                 cells[trial, min(np.int64(accumulator[row, column]), most)] += 1
         for target in range(len(theta)):
             # The row as the angle counts it may lie beyond the seam; ρ is taken in the row itself.
-            beyond = math.floor(theta[target] / theta_step - offset + 0.5)
+            beyond = floored(theta[target] / theta_step - offset + 0.5)
             row = beyond % rows
             rho = lines.middle_x[trial, target] * cosine[row] + lines.middle_y[trial, target] * sine[row]
-            column = math.floor((rho - begin) / rho_step)
+            column = floored((rho - begin) / rho_step)
             home[trial, target] = block[trial, target] = -1
             if 0 <= column < width:
                 home[trial, target] = accumulator[row, FIRST + column]
@@ -97,7 +98,7 @@ def _count(x, y, offsets, shifts, lines, angles, fixed, accumulator, columns, co
                         near %= rows
                         # Across the seam the cell of the same line has −ρ.
                         centre = begin + (across + 0.5) * rho_step
-                        across = math.floor((-centre - begin) / rho_step)
+                        across = floored((-centre - begin) / rho_step)
                     if 0 <= across < width:
                         votes = np.int64(accumulator[near, FIRST + across])
                         block[trial, target] = max(block[trial, target], votes)

@@ -230,7 +230,7 @@ def _mixed(plots, state, track_offsets, plot_offsets, origin):  # type: ignore[n
     mixed = np.zeros(len(track_offsets) - 1, np.int64)
     for trial in range(len(track_offsets) - 1):
         for track in range(track_offsets[trial], track_offsets[trial + 1]):
-            if state[track] == FALSE:
+            if state[track] == FALSE or plots[track, 0] < 0:
                 continue
             first = origin[plot_offsets[trial] + plots[track, 0]]
             for row in plots[track]:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.compiled import kernel
+from algorithms.rounding import floored
 
 PLANES = np.array([[0, 1], [0, 2], [1, 2]])
 """Axes of the planes xy, xz and yz."""
@@ -93,7 +94,7 @@ def confirm(theta, distance, count, width, height, is_fixed, least, confirmed, i
     confirmed : bool (≥ count,), set where a vote lies in such a window
     inside, sorted_in : int64 and float64 (≥ count,), working space
     """
-    for begin in range(math.ceil(math.pi / width) if is_fixed else count):
+    for begin in range(-floored(-math.pi / width) if is_fixed else count):
         lowest = begin * width if is_fixed else theta[begin]
         if np.isnan(lowest):
             continue

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 from algorithms.context import Box, Unit
 from algorithms.errors import RequestError
-from algorithms.parameters import unknown
+from algorithms.parameters import LEAST, Deviation, NotNegative, Number, Positive, checked, unknown
 from hough_tui.quantisation.designs import Demands, Sensing
 from hough_tui.recorded.initiation import Known
 
@@ -41,15 +39,12 @@ def known_sensor(
     RequestError
         Where a value is not allowed.
     """
-    _must(sigma is None or (math.isfinite(sigma) and sigma >= 0), f"--sigma {sigma}: it must be at least 0")
+    checked(sigma, Deviation | None, "--sigma")
     _must(
         detection_probability is None or 0 < detection_probability <= 1,
         f"--detection-probability {detection_probability}: it must be greater than 0 and at most 1",
     )
-    _must(
-        interval is None or (math.isfinite(interval) and interval > 0),
-        f"--interval {interval}: it must be greater than 0",
-    )
+    checked(interval, Positive | None, "--interval")
     units = [known.value for known in Unit]
     _must(unit is None or unit in units, f"--unit: {unknown(unit or '', units, 'unit')}")
     return Known(sigma, detection_probability, Unit(unit) if unit else None, _region(region))
@@ -85,14 +80,14 @@ def sensing(
     assert scans is not None
     assert clutter is not None
     _must(speed is None or extent is None, "--speed and --extent say the same thing: give one of them")
-    _must(math.isfinite(clutter) and clutter >= 0, f"--clutter {clutter}: it must be at least 0")
+    checked(clutter, NotNegative, "--clutter")
     spacing = 1.0 if interval is None else interval
     if extent is not None:
-        _must(math.isfinite(extent) and extent > 0, f"--extent {extent}: it must be greater than 0")
+        checked(extent, Positive, "--extent")
         _must(scans > 1, "--extent: a line has one with two scans or more; give more --scans, or a --speed")
         speed = extent / ((scans - 1) * spacing)
     assert speed is not None
-    _must(math.isfinite(speed) and speed > 0, f"--speed {speed}: it must be greater than 0")
+    checked(speed, Positive, "--speed")
     assumed = {}
     if known.detection_probability is None:
         assumed["detection_probability"] = "1"
@@ -113,10 +108,7 @@ def demands(false_cells: float, kappa: float, separation: float | None, confiden
         Where a value is not allowed.
     """
     for name, value in (("--false-cells", false_cells), ("--kappa", kappa), ("--separation", separation)):
-        _must(
-            value is None or (math.isfinite(value) and value > 0),
-            f"{name} {value}: it must be greater than 0",
-        )
+        checked(value, Positive | None, name)
     _must(0 < confidence < 1, f"--confidence {confidence}: it must lie between 0 and 1")
     return Demands(false_cells, kappa, separation, confidence)
 
@@ -128,8 +120,10 @@ def _region(text: str | None) -> Box | None:
         west, east, south, north = map(float, text.split(","))
     except ValueError:
         raise RequestError(f"--region {text}: it must be X0,X1,Y0,Y1, four numbers") from None
+    for bound in (west, east, south, north):
+        checked(bound, Number, f"--region {text}:")
     _must(
-        all(map(math.isfinite, (west, east, south, north))) and west < east and south < north,
+        east - west >= LEAST and north - south >= LEAST,
         f"--region {text}: X0 must be less than X1, and Y0 less than Y1",
     )
     return Box((west, south), (east, north))

@@ -203,7 +203,7 @@ def sensing_design(sensing: Sensing, demands: Demands, seed: int, assumed: dict[
         heading = random.uniform(0.0, 2.0 * math.pi)
         velocity = sensing.speed * np.array([math.cos(heading), math.sin(heading)])
         first = middle - 0.5 * elapsed * velocity
-        target = Target(position=tuple(map(float, first)), velocity=tuple(map(float, velocity)))
+        target = validated(Target, {"position": first.tolist(), "velocity": velocity.tolist()}, "options")
         scenarios.append(scenario.model_copy(update={"targets": [target]}))
     return Design(_question(scenario, (line,), demands), tuple(scenarios), ("target",), assumed)
 

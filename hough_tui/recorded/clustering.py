@@ -22,7 +22,7 @@ from algorithms.clustering.points import Points
 from algorithms.clustering.splitting import Splits
 from algorithms.clustering.tree import Step, steps
 from algorithms.errors import RequestError
-from algorithms.parameters import unknown, validated
+from algorithms.parameters import Positive, checked, unknown, validated
 from hough_tui.recorded.initiation import assign
 from scenarios.files.point_files import PointRecording
 
@@ -177,8 +177,7 @@ def cluster_recording(
 def _opened(recording: PointRecording, span: float) -> tuple[PointRecording, tuple[float, float]]:
     """Return points with Doppler cut open in the widest gap of each scan or dwell, and the circle."""
     points = recording.points
-    if not (math.isfinite(span) and span > 0.0):
-        raise RequestError(f"--doppler-span: {span} is given; it must be a number greater than 0")
+    checked(span, Positive, "--doppler-span")
     low = lowest(points.doppler, span)
     if low is None:
         raise RequestError(

@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 from algorithms.initiators.base import Initiator
 from algorithms.initiators.registry import FailedPlugIn
-from algorithms.parameters import LARGEST_WHOLE
+from algorithms.parameters import LARGEST, LARGEST_WHOLE, LEAST
 
 TYPES = {
     "number": "number",
@@ -69,13 +69,17 @@ def _allowed(schema: dict[str, Any]) -> str:
         return str(schema["const"])
     if schema.get("type") == "array":
         return "[" + ", ".join(_allowed(item) for item in schema.get("prefixItems", ())) + "]"
-    limits = [f"{sign} {schema[key]:g}" for key, sign in BOUNDS.items() if _tells(schema, key)]
+    limits = [_limit(key, sign, schema[key]) for key, sign in BOUNDS.items() if _tells(schema, key)]
     return " ".join([TYPES.get(schema.get("type", ""), "value"), *([", ".join(limits)] if limits else [])])
 
 
+def _limit(key: str, sign: str, bound: float) -> str:
+    return "> 0" if key == "minimum" and bound == LEAST else f"{sign} {bound:g}"
+
+
 def _tells(schema: dict[str, Any], key: str) -> bool:
-    """Return whether a bound says something: not what the width of a number or a stricter bound says."""
-    if key not in schema or abs(schema[key]) == LARGEST_WHOLE:
+    """Return whether a bound says something: not what those of all numbers or a stricter bound say."""
+    if key not in schema or abs(schema[key]) in (LARGEST, LARGEST_WHOLE):
         return False
     stricter = {"maximum": "exclusiveMaximum", "minimum": "exclusiveMinimum"}.get(key, "")
     return bool(schema.get(stricter) != schema[key])

@@ -50,6 +50,13 @@ class NumberColumn:
     is_whole: bool = False
 
 
+def within(farthest: float) -> NumberColumn:
+    """Return a column of numbers up to so far from 0 on either side."""
+    return NumberColumn(
+        f"a number from {-farthest:g} to {farthest:g}", lambda values: np.abs(values) <= farthest
+    )
+
+
 SCAN = NumberColumn(
     f"a whole number from 0 to {LARGEST_SCAN}",
     lambda values: (values >= 0.0) & (values <= LARGEST_SCAN) & (values == np.floor(values)),

@@ -14,18 +14,13 @@ from numpy.typing import NDArray
 
 from algorithms.clustering.points import ALLOWED, Points, is_allowed
 from algorithms.errors import RequestError
-from scenarios.files.csv_tables import SCAN, NumberColumn, Numbers, TableForm, parse_columns
+from algorithms.parameters import LARGEST
+from scenarios.files.csv_tables import SCAN, NumberColumn, TableForm, parse_columns, within
 
-
-def _column(name: str) -> NumberColumn:
-    def holds(values: Numbers) -> NDArray[np.bool_]:
-        return is_allowed(name, values)
-
-    return NumberColumn(ALLOWED[name], holds)
-
+AMPLITUDE = NumberColumn(ALLOWED["amplitude"], lambda values: is_allowed("amplitude", values))
 
 FORM = TableForm(
-    {"scan": SCAN, "dwell": NumberColumn(), **{name: _column(name) for name in ALLOWED}},
+    {"scan": SCAN, **dict.fromkeys(("dwell", "range", "doppler"), within(LARGEST)), "amplitude": AMPLITUDE},
     needed=("range", "doppler", "amplitude"),
 )
 """The columns of a file of points."""

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.errors import RequestError
+from algorithms.parameters import LARGEST, LEAST
 from algorithms.plots import Plots
 from scenarios.files.csv_tables import (
     LARGEST_SCAN,
@@ -28,12 +29,21 @@ from scenarios.files.csv_tables import (
     TableForm,
     parse_columns,
     read_records,
+    within,
 )
 from scenarios.files.set_files import read_text
 from scenarios.simulate import Draw
 
+LATEST = 1e19
+"""The latest time, in seconds or whatever the file counts in: nanoseconds since 1970 are earlier."""
+
 FORM = TableForm(
-    {"scan": SCAN, **dict.fromkeys(("time", "x", "y", "z", "amplitude", "doppler"), NumberColumn())},
+    {
+        "scan": SCAN,
+        "time": within(LATEST),
+        **dict.fromkeys(("x", "y", "z", "doppler"), within(LARGEST)),
+        "amplitude": NumberColumn(),
+    },
     needed=("x", "y"),
     either=("scan", "time"),
     rows="plots",
@@ -94,8 +104,8 @@ def parse_plots(
     RequestError
         One line with the file's line and column, what is given and what is allowed.
     """
-    if interval is not None and not 0.0 < interval <= LONGEST_INTERVAL:
-        allowed = f"above 0 and at most {LONGEST_INTERVAL:g} s"
+    if interval is not None and not LEAST <= interval <= LONGEST_INTERVAL:
+        allowed = f"from {LEAST:g} s to {LONGEST_INTERVAL:g} s"
         raise RequestError(f"interval: {interval:g} is given; it must be {allowed}")
     columns, extra = parse_columns(text, source, FORM)
     assumed: dict[str, str] = {}
@@ -130,11 +140,10 @@ def _scans(
         distinct, scan = np.unique(time, return_inverse=True)
         assumed["scan"] = f"each distinct time is a scan, {len(distinct):,} in all"
         return scan.astype(np.int64)
-    with np.errstate(over="ignore"):
-        # A time on the border of two scans belongs to the later, though it be rounded down: times
-        # since 1970 are rounded by more than the usual slack.
-        slack = max(1e-9, 2.0 * float(np.spacing(np.abs(time).max())) / interval)
-        number: Numbers = np.floor((time - time.min()) / interval + slack)
+    # A time on the border of two scans belongs to the later, though it be rounded down: times
+    # since 1970 are rounded by more than the usual slack.
+    slack = max(1e-9, 2.0 * float(np.spacing(np.abs(time).max())) / interval)
+    number: Numbers = np.floor((time - time.min()) / interval + slack)
     if number.max() > LARGEST_SCAN:
         raise RequestError(
             f"{source}: at an interval of {interval:g} s the times, {time.min():g} to {time.max():g} s, span "
@@ -149,18 +158,17 @@ def _interval(
 ) -> float:
     """Return the interval, from the mean times of the (sorted) scans where it is not given."""
     numbers, first, counts = np.unique(scan, return_index=True, return_counts=True)
-    with np.errstate(over="ignore", invalid="ignore"):
-        # Counted from the scan's first time, so that the mean of equal times is exactly that time.
-        since_first = time - np.repeat(time[first], counts)
-        steps = np.diff(time[first] + np.add.reduceat(since_first, first) / counts)
-        rates = steps / np.diff(numbers)
+    # Counted from the scan's first time, so that the mean of equal times is exactly that time.
+    since_first = time - np.repeat(time[first], counts)
+    steps = np.diff(time[first] + np.add.reduceat(since_first, first) / counts)
+    rates = steps / np.diff(numbers)
     back = np.flatnonzero(steps < 0.0)
     if len(back):
         begin, end = numbers[back[0]], numbers[back[0] + 1]
         more = f", the first of {len(back):,} such steps" if len(back) > 1 else ""
         assumed["order"] = f"by scan, though time runs backwards from scan {begin} to scan {end}{more}"
     if interval is None:
-        rates = rates[(rates > 0.0) & (rates <= LONGEST_INTERVAL)]
+        rates = rates[(rates >= LEAST) & (rates <= LONGEST_INTERVAL)]
         interval = float(np.median(rates)) if len(rates) else 1.0
         why = "the median step of time" if len(rates) else "as the times do not tell it"
         assumed["interval"] = f"{interval:g} s, {why}"

@@ -184,7 +184,7 @@ def test_a_plug_in_that_cannot_be_loaded_is_a_warning(hough_tui, tmp_path):
     )
     done = hough_tui("initiators", "--json")
     assert done.returncode == 0
-    listed = {each["name"]: each for each in json.loads(done.stdout)}
+    listed = {each["name"]: each for each in json.loads(done.stdout)["initiators"]}
     assert listed["ends"] == {
         "name": "ends", "summary": "", "source": "", "parameters": [], "error": reason,
     }  # fmt: skip

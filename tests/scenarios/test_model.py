@@ -5,14 +5,16 @@ import math
 import pytest
 from pydantic import ValidationError
 
+from algorithms.clustering.parameters import MODES
 from algorithms.context import Context, Unit
 from algorithms.errors import RequestError
 from algorithms.initiators.registry import initiators
-from algorithms.parameters import numeric_paths, validated
+from algorithms.parameters import FieldError, numeric_paths, replaced, validated
 from algorithms.scoring.matching import Criterion
 from scenarios.clutter import MOST_PLOTS, PoissonClutter, Region
 from scenarios.experiments import LARGEST_SEED, MOST_TRIALS, InitiationExperiment, MatchCriterion
 from scenarios.model import Scenario, ScenarioSet
+from scenarios.scenes import Scene
 from scenarios.sensors import CartesianSensor
 from scenarios.targets import Target
 
@@ -205,6 +207,68 @@ def test_the_numeric_fields_of_a_scenario_can_be_swept():
 
 
 # Bounds
+
+
+RADAR = {"kind": "polar", "sigma_range": 0.1, "sigma_azimuth_deg": 1.0, "range": [0, 100]}
+CELLS = {"range_cell": 0.1, "beam_width_deg": 1.0, "doppler_cell": 0.01, "doppler_cells": 100}
+EXTENDED = {"range_spread": 0.1, "doppler_spread": 0.1}
+
+
+SCENE = {
+    "name": "scene",
+    "region": {"range": [0, 9], "doppler": [0, 9]},
+    "targets": [{"range": 1, "doppler": 1}],
+}
+BOUNDED = {
+    "scenario": Scenario.model_validate(
+        {
+            **SCENARIO,
+            "sensor": {**RADAR, "period": 2, "resolution": CELLS},
+            "targets": [{"position": [1, 2], "velocity": [3, 4], "spread": [1, 1], "extended": EXTENDED}],
+            "clutter": [{"rate": 1, "over": "sector"}],
+        }
+    ),
+    "scene": Scene.model_validate(SCENE),
+    "criterion": MatchCriterion(rho=1.0, theta_deg=1.0),
+    **{name: MODES[name](range_extent=1.0) for name in ("corrected-patent",)},
+    **{name: found.parameters.model_validate({}) for name, found in initiators().items()},
+}
+
+
+@pytest.mark.parametrize("name", BOUNDED)
+@pytest.mark.parametrize("beyond", [1e300, -1e300, 1.001e12])
+def test_every_number_has_bounds(name, beyond):
+    for path in numeric_paths(BOUNDED[name]):
+        with pytest.raises(FieldError) as refused:
+            replaced(BOUNDED[name], {path: beyond})
+        assert refused.value.problem.path == path
+
+
+@pytest.mark.parametrize(
+    "path", [("interval",), ("sensor", "resolution", "range_cell"), ("sensor", "sigma_range")]
+)
+@pytest.mark.parametrize("tiny", [1e-300, 5e-324, 0.999e-12])
+def test_positive_numbers_next_to_0_are_refused(path, tiny):
+    with pytest.raises(FieldError, match="at least 1e-12"):
+        replaced(BOUNDED["scenario"], {path: tiny})
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"targets": [{"position": [1e12, 0], "velocity": [1, 0]}]}, "targets[0] has a coordinate of 1e+12"),
+        ({"targets": [{"position": [0, 0], "velocity": [0, -1e12]}]}, "a coordinate of 1.6e+13 in its"),
+        ({"interval": 1e12}, "the last scan is at 4e+12 s; no time"),
+        ({"sensor": {**RADAR, "position": [-1e12, 0]}}, "position and range reach 1e+12 far"),
+        ({"sensor": {**RADAR, "resolution": {**CELLS, "range_cell": 1e-12}}, "targets": [
+            {"position": [1, 2], "velocity": [3, 4], "extended": {"range_spread": 1e6}}]},
+         "range_cell 1e-12 is given, and points lie up to 1e+07 far; the limit is 1e+15 cells"),
+    ],
+)  # fmt: skip
+def test_what_follows_from_numbers_is_bounded_too(changes, message):
+    with pytest.raises(RequestError) as refused:
+        validated(Scenario, {**SCENARIO, **changes}, "scenario")
+    assert message in str(refused.value)
 
 
 @pytest.mark.parametrize(

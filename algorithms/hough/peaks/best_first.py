@@ -16,6 +16,7 @@ from algorithms.hough.peaks.cells import centroid, scatter, written
 from algorithms.hough.peaks.extraction import Extraction
 from algorithms.hough.peaks.slanted_window import PeakRule, window_column, window_row
 from algorithms.hough.peaks.threshold import at_threshold
+from algorithms.rounding import floored
 
 ASSUMED_SPEED = 200.0
 """Speed in m/s from which the length of a track follows: an initiator does not learn the targets."""
@@ -74,13 +75,13 @@ def _best_first(ballot, rule, cells, count):  # type: ignore[no-untyped-def]
             run += 1
         if run > begin + 1:
             for place in range(begin, run):
-                row, column = int(candidates[order[place], 0]), int(candidates[order[place], 1]) + 1
+                row, column = floored(candidates[order[place], 0]), floored(candidates[order[place], 1]) + 1
                 scatters[place] = np.inf
                 if values[row, column] != 0:
                     scatters[place] = scatter(ballot, row, column)
             order[begin:run] = order[begin:run][np.argsort(scatters[begin:run], kind="mergesort")]
         for place in range(begin, run):
-            row, column = int(candidates[order[place], 0]), int(candidates[order[place], 1]) + 1
+            row, column = floored(candidates[order[place], 0]), floored(candidates[order[place], 1]) + 1
             if values[row, column] == 0 or count - first == rule.most:
                 continue
             cells, count = written(cells, count, row, column, values[row, column])

@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from algorithms.compiled import kernel
 from algorithms.hough.grid import Grid
 from algorithms.hough.peaks.ballots import trial_loop
 from algorithms.hough.peaks.cells import maximum, written
 from algorithms.hough.peaks.extraction import Extraction
+from algorithms.rounding import floored
 
 
 class SequentialRule(NamedTuple):
@@ -47,7 +46,7 @@ def clear_window(accumulator, row, column, rule, grid):  # type: ignore[no-untyp
             target = other % height
             if ((other - target) // height) % 2 != 0:
                 rho = rho_min + (column - 0.5) * rho_step
-                centre = int(np.floor((-rho - rho_min) / rho_step)) + 1
+                centre = floored((-rho - rho_min) / rho_step) + 1
         low = max(centre - rule.columns, 1)
         high = min(centre + rule.columns + 1, accumulator.shape[1] - 1)
         for cleared in range(low, high):

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from algorithms.compiled import kernel
 from algorithms.hough.voting import FIRST
+from algorithms.rounding import floored
 
 
 class PeakRule(NamedTuple):
@@ -48,4 +47,4 @@ def window_column(x, y, row, grid):  # type: ignore[no-untyped-def]
     too. Not clipped to the accumulator.
     """
     along_x, along_y = grid.cosine[row] / grid.rho_step, grid.sine[row] / grid.rho_step
-    return np.int64(np.floor(x * along_x + y * along_y + (FIRST - grid.rho_min / grid.rho_step)))
+    return floored(x * along_x + y * along_y + (FIRST - grid.rho_min / grid.rho_step))

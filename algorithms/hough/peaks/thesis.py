@@ -14,6 +14,7 @@ from algorithms.hough.peaks.ballots import trial_loop
 from algorithms.hough.peaks.cells import scatter
 from algorithms.hough.peaks.extraction import Extraction, greatest
 from algorithms.hough.peaks.threshold import at_threshold
+from algorithms.rounding import floored
 
 
 class ThesisRule(NamedTuple):
@@ -52,10 +53,10 @@ def _least_deviations(ballot, rule, cells, count):  # type: ignore[no-untyped-de
     for here in range(first, end):
         if not is_left[here - first]:
             continue
-        row, column = int(cells[here, 0]), int(cells[here, 1])
+        row, column = floored(cells[here, 0]), floored(cells[here, 1])
         best, least = here, -1.0
         for other in range(here + 1, end):
-            other_row, other_column = int(cells[other, 0]), int(cells[other, 1])
+            other_row, other_column = floored(cells[other, 0]), floored(cells[other, 1])
             if other_row - row > rule.rows:
                 break
             if not is_left[other - first] or abs(other_column - column) > rule.columns:

@@ -13,7 +13,7 @@ from annotated_types import Ge, Gt, Le, Lt, MinLen
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from algorithms.parameters import LARGEST_WHOLE
+from algorithms.parameters import LARGEST, LARGEST_WHOLE, LEAST
 from hough_tui.ui.forms.numbers import number_text
 
 
@@ -97,19 +97,23 @@ def discriminator(found: tuple[type[BaseModel], ...]) -> str | None:
 def number_bounds(numbers: Iterable[Alternative]) -> str:
     """Return the tightest of the bounds that the types and the field itself set, in words."""
     said: list[Any] = [part for number in numbers for part in number.metadata]
-    lows: list[tuple[Any, int]] = [(part.ge, 0) for part in said if isinstance(part, Ge)]
+    lows: list[tuple[Any, int]] = [_low(part.ge) for part in said if isinstance(part, Ge)]
     lows += [(part.gt, 1) for part in said if isinstance(part, Gt)]
     highs: list[tuple[Any, int]] = [(part.le, 0) for part in said if isinstance(part, Le)]
     highs += [(part.lt, -1) for part in said if isinstance(part, Lt)]
     # Where two are at one number, the strict one is the tighter.
     low, high = max(lows, default=None), min(highs, default=None)
     words = []
-    # The width of the kernels' whole numbers is no bound that anyone meets.
-    if low is not None and low[0] != -LARGEST_WHOLE:
+    # Those of all numbers are bounds that nobody meets.
+    if low is not None and low[0] not in (-LARGEST, -LARGEST_WHOLE):
         words.append(f"{'greater than' if low[1] else 'at least'} {number_text(low[0])}")
-    if high is not None and high[0] != LARGEST_WHOLE:
+    if high is not None and high[0] not in (LARGEST, LARGEST_WHOLE):
         words.append(f"{'less than' if high[1] else 'at most'} {number_text(high[0])}")
     return ", ".join(words)
+
+
+def _low(bound: Any) -> tuple[Any, int]:
+    return (0, 1) if bound == LEAST else (bound, 0)
 
 
 def text_bounds(found: Iterable[Alternative]) -> str:

@@ -1,8 +1,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 
 import cv2
 import numpy as np
@@ -216,35 +214,14 @@ def test_coordinates_of_a_billion_vote_as_those_at_the_origin_do():
     )
 
 
-# In a process of its own: an index beyond the accumulator ends the process.
-EXTREMES = """
-import numpy as np
-from algorithms.context import Context
-from algorithms.errors import RequestError
-from algorithms.hough.grid import GridParameters
-from algorithms.hough.voting import accumulate
-
-for x, grid in (
-    (1e308, dict(rho_step=0.1, rho_bins=10)),
-    (1.0, dict(rho_step=1e-310, rho_bins=10, rho_min=1.0, theta_bins=2, theta_offset=0.0)),
-    (1.0, dict(rho_step=0.1, rho_bins=10, rho_min=-1.79e308)),
-):
-    try:
-        found = accumulate(np.array([[x, -x]]), GridParameters(**grid).grid(Context(1, 1.0)))
-    except RequestError:
-        print("refused")
-    else:
-        print(found.total + found.votes_outside == found.votes.shape[0])
-"""
-
-
-def test_the_extremes_of_floating_point_are_counted_or_refused(pytestconfig):
-    done = subprocess.run(
-        [sys.executable, "-c", EXTREMES],
-        cwd=pytestconfig.rootpath,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    assert set(done.stdout.split()) <= {"True", "refused"}
+@pytest.mark.parametrize(
+    ("x", "grid"),
+    [
+        (1e308, Grid(90, 10, -0.5, 0.1)),
+        (1.0, Grid(2, 10, 1.0, 1e-310, theta_offset=0.0)),
+        (1.0, Grid(90, 10, -1.79e308, 0.1)),
+    ],
+)
+def test_every_row_counts_a_plot_of_any_place_once(x, grid):
+    found = accumulate(np.array([[x, -x]]), grid)
+    assert found.total + found.votes_outside == grid.theta_bins

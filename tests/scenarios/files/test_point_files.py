@@ -45,9 +45,9 @@ def test_without_scans_all_points_are_of_scan_0():
         ("range,doppler,amplitude\n1,2,3\n1,oops,3\n",
          "points.csv:3: column 'doppler': 'oops' is given; it must be a number"),
         ("range,doppler,amplitude\nnan,2,3\n",
-         "points.csv:2: column 'range': 'nan' is given; it must be a number from -1e+15 to 1e+15"),
-        ("range,doppler,amplitude\n1,2e15,3\n",
-         "points.csv:2: column 'doppler': '2e15' is given; it must be a number from -1e+15 to 1e+15"),
+         "points.csv:2: column 'range': 'nan' is given; it must be a number from -1e+12 to 1e+12"),
+        ("range,doppler,amplitude\n1,2e12,3\n",
+         "points.csv:2: column 'doppler': '2e12' is given; it must be a number from -1e+12 to 1e+12"),
         ("range,doppler,Amplitude\n1,2,-3\n",
          "points.csv:2: column 'Amplitude': '-3' is given; it must be a finite number, at least 0; "
          "amplitudes are linear, x dB are 10^(x/20)"),
