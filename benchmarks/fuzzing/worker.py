@@ -36,6 +36,8 @@ def main() -> None:
     threading.Thread(target=end_with, args=(os.getppid(),), daemon=True).start()
     module, _, function = sys.argv[1].partition(":")
     command_line = getattr(importlib.import_module(module), function)
+    # As `python -W always` does: else the command line keeps warnings of libraries from its user.
+    sys.warnoptions.append("always")
     # The default shows a warning once a place, that is to the first case alone.
     for category in (RuntimeWarning, UserWarning, SyntaxWarning, FutureWarning):
         warnings.simplefilter("always", category)
