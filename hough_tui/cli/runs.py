@@ -77,14 +77,15 @@ def batch(
         raise
     run = result(job)
     status = keep_run(run) if keep else 0
+    # Files first: what cannot be printed must not cost them.
+    if csv is not None and str(csv) != "-":
+        replace_file(csv, csv_text(run.document["rows"]))
     if as_json:
         write_document(document_text(run.document))
     elif str(csv) == "-":
         write_document(csv_text(run.document["rows"]))
     else:
         print_rates(run.document["rows"], shown, plot)
-    if csv is not None and str(csv) != "-":
-        replace_file(csv, csv_text(run.document["rows"]))
     seconds = job.seconds
     tell(
         f"{counted(len(plan.cells), 'cell')}, {counted(plan.trials, 'trial')} in {seconds:.1f} s, "

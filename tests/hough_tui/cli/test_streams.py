@@ -61,6 +61,17 @@ def test_a_file_is_written_without_standard_output(tmp_path):
     assert path.read_text().startswith("scan,time,x,y")
 
 
+def test_a_run_whose_table_is_lost_is_kept(cli, data_home, tmp_path, monkeypatch):
+    with open("/dev/full", "w") as full:
+        monkeypatch.setattr(sys, "stdout", full)
+        path = tmp_path / "rows.csv"
+        status, _, said = cli("batch", "course-report", "--experiment=tables", "--trials=2", "--csv", path)
+    assert status == 1
+    assert said.endswith(FULL)
+    assert path.read_text().startswith("set,")
+    assert len([*(data_home / "hough-tui" / "runs").glob("*/result.json")]) == 1
+
+
 @pytest.fixture
 def encoded(data_home, tmp_path, monkeypatch):
     """Run a command on streams of an encoding; return its status and what it printed, as bytes."""
