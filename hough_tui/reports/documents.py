@@ -53,14 +53,15 @@ def csv_text(rows: Sequence[Row]) -> str:
     return out.getvalue()
 
 
-def markdown_text(rows: Sequence[Row]) -> str:
+def markdown_text(rows: Sequence[Row], wanted: Sequence[str] | None = None) -> str:
     """Return result rows as Markdown, one table for each experiment of each set.
 
     Parameters
     ----------
     rows : as `hough-tui batch --json` prints them
+    wanted : keys of the metrics and intervals to show; None for those that say something
     """
-    return "\n".join(sheet_markdown(sheet) for sheet in rate_sheets(rows))
+    return "\n".join(sheet_markdown(sheet) for sheet in rate_sheets(rows, wanted))
 
 
 def sheet_markdown(sheet: Sheet) -> str:

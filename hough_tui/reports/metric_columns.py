@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 from algorithms.errors import RequestError
@@ -82,6 +83,36 @@ def parse_columns(text: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(keys))
 
 
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """A column that a table of some rows can show.
+
+    Attributes
+    ----------
+    key : of the metric or its interval
+    words : what it is called, with its unit
+    definition : what it is
+    """
+
+    key: str
+    words: str
+    definition: str
+
+
+def offered(rows: Sequence[Row]) -> list[Offer]:
+    """Return the columns that say something of rows, each interval after its metric."""
+    offers = []
+    for metric in METRICS.values():
+        is_column = metric.estimator.is_number or metric.estimator.is_by_target
+        if is_column and has_values(metric, rows):
+            label = metric.label()
+            offers.append(Offer(metric.key, label, metric.definition))
+            if any(None not in pair(row.get(metric.interval_key or "")) for row in rows):
+                words = f"95 % interval of {label}"
+                offers.append(Offer(metric.interval_key or "", f"  {words}", metric.definition))
+    return offers
+
+
 def metric_columns(rows: Sequence[Row], wanted: Sequence[str] | None = None) -> list[Column]:
     """Return the columns of metrics of rows.
 
@@ -92,7 +123,12 @@ def metric_columns(rows: Sequence[Row], wanted: Sequence[str] | None = None) -> 
         those that have a rank and say something
     """
     if wanted is not None:
-        return [column for place, key in enumerate(wanted) for column in _wanted(rows, key, place)]
+        before = [None, *wanted]
+        return [
+            column
+            for rank, (key, previous) in enumerate(zip(wanted, before, strict=False))
+            for column in _wanted(rows, key, previous, rank)
+        ]
     kinds = {kind_of(row).world for row in rows}
     columns, by_target = [], list[Column]()
     for metric in METRICS.values():
@@ -112,13 +148,15 @@ def metric_columns(rows: Sequence[Row], wanted: Sequence[str] | None = None) -> 
     return columns + by_target
 
 
-def _wanted(rows: Sequence[Row], key: str, rank: int) -> list[Column]:
+def _wanted(rows: Sequence[Row], key: str, previous: str | None, rank: int) -> list[Column]:
+    """Return the columns of a key; an interval that does not stand beside its metric says whose it is."""
     for metric in METRICS.values():
         if metric.key == key:
             is_by_target = metric.estimator.is_by_target
             return _target_columns(metric, rows, rank) if is_by_target else [_column(metric, rows, rank)]
         if metric.interval_key == key:
-            return _interval_columns(metric, rows, rank, is_wanted=True)
+            (column,) = _interval_columns(metric, rows, rank, is_wanted=True)
+            return [column if previous == metric.key else replace(column, heading=f"{metric.words}\n95 %")]
     return []
 
 

@@ -8,10 +8,15 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from hough_tui.experiments.columns.schema import Column, Columns
+from hough_tui.experiments.columns.schema import Column, Columns, Listed
 
 TARGETS = "targets"
 """Second axis."""
+
+EXCESS = Column(np.int32, is_required=True, listed=Listed("excess", "excess"))
+SQUARED_ERROR = Column(
+    np.float64, TARGETS, np.nan, is_required=True, listed=Listed("error", "error", 2, np.sqrt)
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,8 +30,8 @@ class ClusterColumns(Columns):
         trial without plots
     """
 
-    excess: Annotated[NDArray[np.int32], Column(np.int32, is_required=True)]
-    squared_error: Annotated[NDArray[np.float64], Column(np.float64, TARGETS, np.nan, is_required=True)]
+    excess: Annotated[NDArray[np.int32], EXCESS]
+    squared_error: Annotated[NDArray[np.float64], SQUARED_ERROR]
 
     @property
     def clusters(self) -> NDArray[np.int32]:

@@ -8,11 +8,44 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from hough_tui.experiments.columns.schema import Column, Columns
+from hough_tui.experiments.columns.schema import Column, Columns, Listed
 
 TARGETS = "targets"
 CONTROL = "control"
 """Second axes: the targets; the targets where the experiment has a control, else nothing."""
+
+Flags = NDArray[np.bool_]
+Counts = NDArray[np.int32]
+Many = NDArray[np.int64]
+Numbers = NDArray[np.float32]
+
+FOUND = Column(np.bool_, TARGETS, is_required=True, listed=Listed("found", "failed first"))
+TRACKS = Column(np.int32, is_required=True, listed=Listed("tracks", "tracks"))
+FALSE = Column(np.int32, is_required=True, listed=Listed("false", "false tracks"))
+DUPLICATES = Column(np.int32, is_required=True, listed=Listed("dupl.", "duplicates"))
+THETA_ERROR = Column(
+    np.float32, TARGETS, np.nan, is_required=True, listed=Listed("Δθ °", "error in θ", 2, np.degrees)
+)
+RHO_ERROR = Column(np.float32, TARGETS, np.nan, is_required=True, listed=Listed("Δρ", "error in ρ", 3))
+OUTSIDE = Listed("votes\noutside", "votes outside", is_hidden_at_zero=True)
+VOTES_OUTSIDE = Column(np.int64, is_required=True, listed=OUTSIDE)
+CONTROL_FOUND = Column(np.bool_, CONTROL, is_required=True, listed=Listed("control", "control"))
+MIXED = Column(np.int32, fill=-1)
+SCANS_TO_INITIATE = Column(np.int32, TARGETS, -1)
+
+
+def _error(listed: Listed) -> Column:
+    """Return the declaration of an error of each target, which is NaN where states are not judged."""
+    return Column(np.float32, TARGETS, np.nan, listed=listed)
+
+
+POSITION_ERROR = _error(Listed("position", "error in position", 3))
+VELOCITY_ERROR = _error(Listed("velocity", "error in velocity", 4))
+CROSS_TRACK_ERROR = _error(Listed("across", "error across", 3))
+NEES = _error(Listed("NEES", "NEES", 1))
+
+GOSPA_PART = Column(np.float32, fill=np.nan)
+EFFORT = Column(np.int64, is_family=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,21 +70,21 @@ class TrialColumns(Columns):
     effort : what the initiator counted of its work, by name
     """
 
-    found: Annotated[NDArray[np.bool_], Column(np.bool_, TARGETS, is_required=True)]
-    tracks: Annotated[NDArray[np.int32], Column(np.int32, is_required=True)]
-    false: Annotated[NDArray[np.int32], Column(np.int32, is_required=True)]
-    duplicates: Annotated[NDArray[np.int32], Column(np.int32, is_required=True)]
-    theta_error: Annotated[NDArray[np.float32], Column(np.float32, TARGETS, np.nan, is_required=True)]
-    rho_error: Annotated[NDArray[np.float32], Column(np.float32, TARGETS, np.nan, is_required=True)]
-    votes_outside: Annotated[NDArray[np.int64], Column(np.int64, is_required=True)]
-    control_found: Annotated[NDArray[np.bool_], Column(np.bool_, CONTROL, is_required=True)]
-    mixed: Annotated[NDArray[np.int32], Column(np.int32, fill=-1)]
-    scans_to_initiate: Annotated[NDArray[np.int32], Column(np.int32, TARGETS, -1)]
-    position_error: Annotated[NDArray[np.float32], Column(np.float32, TARGETS, np.nan)]
-    velocity_error: Annotated[NDArray[np.float32], Column(np.float32, TARGETS, np.nan)]
-    cross_track_error: Annotated[NDArray[np.float32], Column(np.float32, TARGETS, np.nan)]
-    nees: Annotated[NDArray[np.float32], Column(np.float32, TARGETS, np.nan)]
-    gospa_localisation: Annotated[NDArray[np.float32], Column(np.float32, fill=np.nan)]
-    gospa_missed: Annotated[NDArray[np.float32], Column(np.float32, fill=np.nan)]
-    gospa_false: Annotated[NDArray[np.float32], Column(np.float32, fill=np.nan)]
-    effort: Annotated[dict[str, NDArray[np.int64]], Column(np.int64, is_family=True)]
+    found: Annotated[Flags, FOUND]
+    tracks: Annotated[Counts, TRACKS]
+    false: Annotated[Counts, FALSE]
+    duplicates: Annotated[Counts, DUPLICATES]
+    theta_error: Annotated[Numbers, THETA_ERROR]
+    rho_error: Annotated[Numbers, RHO_ERROR]
+    votes_outside: Annotated[Many, VOTES_OUTSIDE]
+    control_found: Annotated[Flags, CONTROL_FOUND]
+    mixed: Annotated[Counts, MIXED]
+    scans_to_initiate: Annotated[Counts, SCANS_TO_INITIATE]
+    position_error: Annotated[Numbers, POSITION_ERROR]
+    velocity_error: Annotated[Numbers, VELOCITY_ERROR]
+    cross_track_error: Annotated[Numbers, CROSS_TRACK_ERROR]
+    nees: Annotated[Numbers, NEES]
+    gospa_localisation: Annotated[Numbers, GOSPA_PART]
+    gospa_missed: Annotated[Numbers, GOSPA_PART]
+    gospa_false: Annotated[Numbers, GOSPA_PART]
+    effort: Annotated[dict[str, Many], EFFORT]

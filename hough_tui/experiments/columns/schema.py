@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Annotated, Any, Self, get_args, get_type_hints
@@ -12,6 +12,26 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from algorithms.errors import RequestError
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """How a list of trials shows a column.
+
+    Attributes
+    ----------
+    heading : one or two lines; of a column by target one, below the name of the target
+    order : what it is called to sort by it, the greatest first
+    decimals : of its numbers
+    shown : returns what is shown of its values
+    is_hidden_at_zero : whether it is left out where all its values are 0
+    """
+
+    heading: str
+    order: str
+    decimals: int = 0
+    shown: Callable[[NDArray[Any]], NDArray[Any]] = np.asarray
+    is_hidden_at_zero: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +45,7 @@ class Column:
     fill : its value where a trial is not finished, and in a file that does not have the column
     is_required : whether a file without the column is of no use
     is_family : whether it is a mapping from names to such columns, which no trial need have
+    listed : how a list of trials shows it; None where it does not
     """
 
     dtype: DTypeLike
@@ -32,6 +53,7 @@ class Column:
     fill: float = 0
     is_required: bool = False
     is_family: bool = False
+    listed: Listed | None = None
 
     def empty(self, trials: int, sizes: Mapping[str, int]) -> Any:
         """Return the column filled with `fill`; of a family no column yet."""

@@ -43,7 +43,8 @@ class MonteCarloView(Widget):
         "the targets. Enter opens the trials behind a row, the failed ones first, and from there one trial "
         "in Look. s sorts by the next column, S the other way. The chart shows any metric (m) against the "
         "swept field, with its 95 % interval, or the ratio of false tracks by trial of the row under the "
-        "cursor (t). F9 shows the form of the experiment: what runs, what is swept, what counts. "
+        "cursor (t). C chooses which metrics and intervals the table shows. F9 shows the form of the "
+        "experiment: what runs, what is swept, what counts. "
         "e exports a finished run, y copies the table. A finished run is kept: see Results."
     )
     DEFAULT_CSS = """

@@ -49,6 +49,18 @@ class RateGrid(VimTable):
         self._is_falling = False
         self._rows: Sequence[Row] = ()
         self._has_targets_first = False
+        self.wanted: tuple[str, ...] | None = None
+
+    @property
+    def shown_keys(self) -> tuple[str, ...]:
+        """Keys of the metrics and intervals that are shown."""
+        return tuple(dict.fromkeys(column.key for column in self._shown if column.key))
+
+    def want(self, keys: tuple[str, ...]) -> None:
+        """Show the columns of some keys; of none: those that say something."""
+        self.wanted = keys or None
+        self.show_rows(self._rows)
+        self.scroll_to(x=0, animate=False)
 
     @property
     def sorted_by(self) -> tuple[str, bool] | None:
@@ -63,7 +75,7 @@ class RateGrid(VimTable):
     def show_rows(self, rows: Sequence[Row]) -> None:
         """Show result rows; those that are there already keep their place on the screen."""
         self._rows = rows
-        columns = rate_columns(rows)
+        columns = rate_columns(rows, self.wanted)
         if self._has_targets_first:
             columns = with_targets_first(columns)
         self.show_columns(columns, identifying_columns(columns, rows))
@@ -97,13 +109,14 @@ class RateGrid(VimTable):
 
     def action_sort(self, step: int) -> None:
         """Sort by the next column; after the last one the plan's order comes back."""
-        names = [None, *(column.name for column in self._shown)]
+        names = [None, *distinct_names(self._shown)]
         here = names.index(self._sorted_by) if self._sorted_by in names else 0
         self.sort_by(names[(here + step) % len(names)])
 
     def turn_targets(self) -> bool:
         """Put success by target beside success, or back to the end; return whether there is any."""
-        if with_targets_first(rate_columns(self._rows)) == rate_columns(self._rows):
+        columns = rate_columns(self._rows, self.wanted)
+        if with_targets_first(columns) == columns:
             return False
         self._has_targets_first = not self._has_targets_first
         self.show_rows(self._rows)
@@ -117,7 +130,7 @@ class RateGrid(VimTable):
 
     def on_data_table_header_selected(self, event: DataTable.HeaderSelected) -> None:
         """Sort by the column that was clicked on; a second click turns it round, a third ends it."""
-        name = self._shown[event.column_index].name
+        name = distinct_names(self._shown)[event.column_index]
         if name != self._sorted_by:
             self.sort_by(name)
         else:
@@ -159,7 +172,7 @@ class RateGrid(VimTable):
         column, width = self._shown[index], self._widths[index]
         lines = column.heading.split("\n")
         lines = [""] * (self.header_height - len(lines)) + lines
-        if column.name == self._sorted_by:
+        if distinct_names(self._shown)[index] == self._sorted_by:
             arrow = ARROWS[self._is_falling]
             lines[-1] = lines[-1] + arrow if column.prose else arrow + lines[-1]
         if not column.prose:
@@ -168,7 +181,7 @@ class RateGrid(VimTable):
 
     def _sort(self) -> None:
         chosen = self.chosen
-        names = [column.name for column in self._shown]
+        names = distinct_names(self._shown)
         if self._sorted_by in names:
             index = names.index(self._sorted_by)
             is_falling = self._is_falling
@@ -185,6 +198,15 @@ class RateGrid(VimTable):
             self.cursor_coordinate = Coordinate(self.get_row_index(chosen), self.cursor_column)
 
 
+def distinct_names(columns: Sequence[Column]) -> list[str]:
+    """Return the headings of columns in one line, those that several have with the column's key."""
+    names = [column.name for column in columns]
+    return [
+        name if names.count(name) == 1 else f"{name} {column.key}"
+        for name, column in zip(names, columns, strict=True)
+    ]
+
+
 def sort_value(text: str) -> tuple[bool, float, str]:
     """Return what a cell is sorted by: whether it has no value, its number, its text.
 
@@ -195,11 +217,17 @@ def sort_value(text: str) -> tuple[bool, float, str]:
     return text in ("", NONE), float(found.group().replace(",", "")) if found else 0.0, text
 
 
-def rate_columns(rows: Sequence[Row]) -> list[Column]:
-    """Return the columns of result rows, of several experiments or sets in one table."""
+def rate_columns(rows: Sequence[Row], wanted: Sequence[str] | None = None) -> list[Column]:
+    """Return the columns of result rows, of several experiments or sets in one table.
+
+    Parameters
+    ----------
+    rows : of any kind
+    wanted : keys of the metrics and intervals to show; None for those that say something
+    """
     if not rows:
         return []
-    (sheet,) = rate_sheets([{**row, "set": "", "experiment": ""} for row in rows])
+    (sheet,) = rate_sheets([{**row, "set": "", "experiment": ""} for row in rows], wanted)
     columns = list(sheet.columns)
     for key in ("experiment", "set"):
         names = tuple(str(row[key]) for row in rows)

@@ -22,9 +22,11 @@ from hough_tui.experiments.cases import AnyCell, Row
 from hough_tui.experiments.chunks.clustering import ClusteringCell
 from hough_tui.experiments.chunks.initiation import InitiationCell
 from hough_tui.reports.documents import markdown_text
+from hough_tui.reports.metric_columns import offered
 from hough_tui.reports.rates import rate_sheets
 from hough_tui.ui.messages import TrialOpened
 from hough_tui.ui.runs.shown_run import ShownRun
+from hough_tui.ui.screens.columns import ColumnsScreen
 from hough_tui.ui.screens.export import Document, ExportScreen
 from hough_tui.ui.screens.question import telling
 from hough_tui.ui.screens.trials import TrialsScreen
@@ -75,6 +77,7 @@ class RatePanel(Widget):
         Binding("M", "metric(-1)", "Metric before", id="rates.metric-before", show=False),
         Binding("t", "by_trial", "False % by trial", id="rates.by-trial", show=False),
         Binding("o", "by_target", "Success by target", id="rates.by-target", show=False),
+        Binding("C", "columns", "Columns", id="rates.columns", show=False),
         Binding("down,j", "row(1)", "Next row", id="rates.next-row", show=False),
         Binding("up,k", "row(-1)", "Previous row", id="rates.previous-row", show=False),
         Binding("e", "export", "Export", id="rates.export", show=False),
@@ -187,6 +190,21 @@ class RatePanel(Widget):
         elif not self.query_one("#rates").display:
             self.action_switch()
 
+    def action_columns(self) -> None:
+        """Choose what the table shows."""
+        rows = [row for row in self._rows if row["trials"]]
+        if not rows:
+            self.notify("There is no row yet whose columns could be chosen", markup=False)
+            return
+        if not self.query_one("#rates").display:
+            self.action_switch()
+
+        def choose(keys: tuple[str, ...] | None) -> None:
+            if keys is not None:
+                self.grid.want(keys)
+
+        self.app.push_screen(ColumnsScreen(offered(rows), self.grid.shown_keys), choose)
+
     def action_row(self, step: int) -> None:
         """Choose another row while the focus is on the chart."""
         self.grid.move_cursor(row=self.grid.cursor_row + step)
@@ -278,7 +296,7 @@ class RatePanel(Widget):
         """Copy the table as Markdown, to the clipboard and to a file."""
         rows = [row for row in self._rows if row["trials"]]
         if rows and self.shown is not None:
-            text = markdown_text(rows)
+            text = markdown_text(rows, self.grid.wanted)
             self.app.copy_to_clipboard(text)
             self._write_copy(self.shown.name, text)
 

@@ -15,7 +15,7 @@ from textual.reactive import reactive
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from hough_tui.ui.widgets.trial_table import QUIET, WRONG, Rows, TrialTable
+from hough_tui.ui.widgets.trial_table import FAILED_FIRST, QUIET, WRONG, Rows, TrialTable
 
 HEADER = 2
 """Lines of the headings."""
@@ -73,7 +73,7 @@ class TrialList(ScrollView, can_focus=True):
         super().__init__()
         self._table = table
         self._order = order
-        self.sorted_by = next(iter(table.ORDERS))
+        self.sorted_by = FAILED_FIRST
         # The order that was asked for last, which may still be on its way.
         self._wanted = self.sorted_by
         widths = [column.width + GAP for column in table.columns]
@@ -120,8 +120,8 @@ class TrialList(ScrollView, can_focus=True):
         """Sort by the next of the orders."""
         names = [
             name
-            for name in self._table.ORDERS
-            if name == "failed first" or any(column.order == name for column in self._table.columns)
+            for name in self._table.orders
+            if name == FAILED_FIRST or any(column.order == name for column in self._table.columns)
         ]
         self._want(names[(names.index(self._wanted) + 1) % len(names)])
 

@@ -6,11 +6,12 @@ import time
 import numpy as np
 import pytest
 from textual.app import App
-from textual.widgets import Input, Select
+from textual.widgets import Input, Select, SelectionList
 
 from hough_tui.experiments.chunks import initiation as chunks
 from hough_tui.experiments.stores.folder import FolderStore
 from hough_tui.ui.messages import TrialOpened
+from hough_tui.ui.screens.columns import ColumnsScreen
 from hough_tui.ui.screens.question import Question
 from hough_tui.ui.screens.trials import TrialsScreen
 from hough_tui.ui.views.monte_carlo import MonteCarloView
@@ -313,6 +314,35 @@ def test_rows_keep_their_identity_when_they_are_sorted_and_while_they_fill():
         assert user.grid.chosen_index == 3
         assert user.column("success %")[user.grid.cursor_row] == "50.0"
         assert user.grid.sorted_by == ("success %", True)
+
+    drive(journey)
+
+
+def test_columns_are_chosen_by_key_and_come_back():
+    async def journey(user):
+        await user.run("20")
+        before = user.grid.shown_keys
+        await user.pilot.press("C")
+        screen = await user.screen(ColumnsScreen)
+        offered = screen.query_one(SelectionList)
+        assert "matches" in texts(screen)
+        assert set(offered.selected) == set(before)
+        offered.deselect_all()
+        await user.pilot.press("j", "space", "enter")
+        await user.until(lambda: user.grid.shown_keys == ("success_rate_ci95",))
+        assert "success 95 %" in [column.name for column in user.grid._shown]
+        await user.pilot.press("y")
+        await user.until(lambda: user.app.clipboard)
+        assert "| success 95 % |" in user.app.clipboard
+        await user.pilot.press("C")
+        await user.screen(ColumnsScreen)
+        await user.pilot.press("d")
+        await user.until(lambda: user.grid.shown_keys == before)
+        await user.pilot.press("C")
+        await user.screen(ColumnsScreen)
+        await user.pilot.press("a", "escape")
+        await user.pilot.pause()
+        assert user.grid.shown_keys == before
 
     drive(journey)
 
