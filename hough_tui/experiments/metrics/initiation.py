@@ -148,7 +148,7 @@ METRICS: tuple[Metric[TrackSample], ...] = (
         estimator=Mean(least=1.0),
         heading="initiated\nscans",
         unit="scans",
-        rank=58,
+        rank=68,
     ),
     Metric(
         key="scans_to_initiate_p90",
