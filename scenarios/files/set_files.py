@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,8 +17,11 @@ from scenarios.files.bundled import bundled_paths
 from scenarios.files.marked_yaml import MarkedDocument, read, rewrite, write
 from scenarios.model import ScenarioSet
 
-LARGEST_FILE = 8 * 2**20
+LARGEST_FILE = 2 * 2**20
 """The largest scenario set that is read, in bytes."""
+
+LARGEST_TEXT = 128 * 2**20
+"""The largest file that is read at all, in bytes; tables take some eight times their size in memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +56,7 @@ def locate(name: str) -> Path:
     return bundled[name]
 
 
-def read_text(path: Path, largest: int | None = None) -> str:
+def read_text(path: Path, largest: int = LARGEST_TEXT) -> str:
     """Return the text of a file.
 
     Raises
@@ -61,18 +65,20 @@ def read_text(path: Path, largest: int | None = None) -> str:
         Where it is missing, a folder, unreadable, too large, or not UTF-8.
     """
     try:
-        if largest is not None and path.stat().st_size > largest:
-            raise RequestError(
-                f"{path}: the file has {path.stat().st_size / 2**20:,.1f} MiB; "
-                f"the limit is {largest / 2**20:g} MiB"
-            )
-        data = path.read_bytes()
+        with path.open("rb") as file:
+            # A device may have no size and no end.
+            data = file.read(largest + 1)
+            size = max(len(data), os.fstat(file.fileno()).st_size)
     except FileNotFoundError:
         raise RequestError(f"{path}: there is no such file") from None
     except IsADirectoryError:
         raise RequestError(f"{path}: this is a folder; give a file") from None
     except OSError as error:
         raise RequestError(f"{path}: cannot be read: {error.strerror or error}") from None
+    if len(data) > largest:
+        raise RequestError(
+            f"{path}: the file has {size / 2**20:,.1f} MiB; the limit is {largest / 2**20:g} MiB"
+        )
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -25,6 +25,7 @@ from scenarios.files.marked_yaml.syntax import (
     LINE_END,
     MERGE,
     MOST_COPIES,
+    MOST_VALUES,
     Path,
     match_end,
     scalar_maker,
@@ -125,6 +126,7 @@ class Reader:
         self.source = source
         self.aliases: list[tuple[int, int, Any]] = []
         self.copies = 0
+        self.values = 0
         self.anchors: dict[str | None, Node | None] = {}
         self.indents: dict[type, int] = {}
         try:
@@ -172,6 +174,9 @@ class Reader:
     def node(self, event: Any, depth: int) -> Node:
         """Read the value that an event begins."""
         mark = event.start_mark
+        self.values += 1
+        if self.values > MOST_VALUES:
+            raise self.failure(mark, f"more than {MOST_VALUES:,} keys and values; make the document smaller")
         if depth > DEEPEST:
             raise self.failure(mark, f"nested more than {DEEPEST} levels deep; make the document flatter")
         if isinstance(event, yaml.AliasEvent):

@@ -13,6 +13,8 @@ Path = tuple[str | int, ...]
 
 # Deeper than a person writes, and shallow enough for any recursive function that meets the data later.
 DEEPEST = 100
+# Values, keys among them, that a document may have: some seconds of reading, 25 MiB of memory.
+MOST_VALUES = 50_000
 # Values that aliases may add to a document; without a bound a few lines can stand for billions of values.
 MOST_COPIES = 100_000
 # PyYAML takes up to 1024 characters for a key on one line; longer keys need the form `? key`.

@@ -105,7 +105,12 @@ def test_a_file_larger_than_any_set_is_not_read(tmp_path):
     path = tmp_path / "huge.yaml"
     with path.open("wb") as file:
         file.truncate(LARGEST_FILE + 1)
-    assert refusal(load_set, path) == f"{path}: the file has 8.0 MiB; the limit is 8 MiB"
+    assert refusal(load_set, path) == f"{path}: the file has 2.0 MiB; the limit is 2 MiB"
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="a device without an end")
+def test_a_file_without_an_end_is_not_read():
+    assert "the limit is 0.001" in refusal(read_text, Path("/dev/zero"), 1000)
 
 
 @pytest.mark.parametrize(("content", "line"), [(b"\xff", 1), (b"a\nb\n\xc3(", 3), (b"\n\nx\xe9y\n", 3)])
