@@ -22,6 +22,9 @@ NARROWEST_PROSE = 11
 LUXURY = 40
 """Columns from this rank on leave before names are broken into narrow lines."""
 
+MOST_NAMED = 6
+"""So many columns that are left out are named, where they can be asked for."""
+
 WIDEST_NOTES = 100
 """Longer lines of running text are hard to read."""
 
@@ -112,8 +115,7 @@ def sheet_table(sheet: Sheet, width: int) -> Table:
     widths = _widths(shown, width)
     notes = list(sheet.notes)
     if left_out:
-        names = dict.fromkeys(column.called or column.name for column in left_out)
-        notes.append(f"A wider terminal also shows {enumerated(list(names))}.")
+        notes.append(f"A wider terminal also shows {_left_out_words(left_out)}.")
     # The empty line keeps the notes apart from the last row where there is no colour.
     below = ["", *notes, *sheet.warnings] if notes or sheet.warnings else []
     styles = ["", *["dim"] * len(notes), *[""] * len(sheet.warnings)]
@@ -179,6 +181,14 @@ def _fit(columns: Sequence[Column], ranks: Collection[int], prose: int, width: i
     """Return whether the columns of some ranks fit, prose broken at a width."""
     needed = [column.least(prose) for column in columns if column.rank in ranks]
     return sum(needed) + GAP * (len(needed) - 1) <= width
+
+
+def _left_out_words(columns: Sequence[Column]) -> str:
+    """Return what is left out: all names, or the first of many where an option chooses among them."""
+    names = list(dict.fromkeys(column.called or column.name for column in columns))
+    if len(names) <= MOST_NAMED or not all(column.key for column in columns):
+        return enumerated(names)
+    return f"{', '.join(names[: MOST_NAMED - 1])} and {len(names) - MOST_NAMED + 1} more; --columns chooses"
 
 
 def enumerated(names: Sequence[str]) -> str:
