@@ -16,7 +16,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from types import FrameType
 from typing import IO, Any
 
@@ -26,10 +26,13 @@ HUNG_UP, INTERRUPTED, TERMINATED = 128 + signal.SIGHUP, 128 + signal.SIGINT, 128
 
 WORDS = {HUNG_UP: "hung up", INTERRUPTED: "interrupted", TERMINATED: "terminated"}
 
-GRACE = {HUNG_UP: 1.2, INTERRUPTED: 0.7, TERMINATED: 1.2}
+GRACE = {HUNG_UP: 1.1, INTERRUPTED: 0.7, TERMINATED: 1.1}
 """Seconds for an end in order, after which the watch ends the process."""
 
-LAST_SECONDS = 0.4
+FINISHING_SECONDS, AFTERWARDS_SECONDS = 10.0, 0.5
+"""How much longer an end waits for what is being finished, such as keeping a run, and then for the rest."""
+
+LAST_SECONDS = 0.6
 """The longest that what is done just before a forced end may take: a terminal may never take a byte."""
 
 
@@ -61,12 +64,17 @@ class EndingWatch:
         self.status: int | None = None
         self._deadline = math.inf
         self._interrupts = 0
+        self._is_impatient = False
         self._raises = True
+        self._unfinished = 0
+        self._deferred: int | None = None
         # A signal handler may come between two lines of a request of the main thread.
         self._lock = threading.RLock()
+        self._last_act = threading.Lock()
         self._on_request: Callable[[int], None] = _nothing
         self._at_last: Callable[[int], None] = _say
         self._poll = select.poll()
+        reserve_descriptors()
         self._pipe, self._far_end = os.pipe()
         os.set_blocking(self._pipe, False)
         os.set_blocking(self._far_end, False)
@@ -107,12 +115,32 @@ class EndingWatch:
         self._wake()
         return True
 
-    def extend(self, seconds: float) -> None:
-        """Let an end in order take some seconds from now on, since something is being finished."""
+    @contextmanager
+    def finishing(self) -> Iterator[None]:
+        """Let an end wait for what is done meanwhile, `FINISHING_SECONDS` at most.
+
+        Raises
+        ------
+        EndedError
+            Afterwards, in the main thread, where a signal came meanwhile.
+        """
         with self._lock:
-            if self.status is not None:
-                self._deadline = max(self._deadline, time.monotonic() + seconds)
-        self._wake()
+            self._unfinished += 1
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._unfinished -= 1
+                if self.status is not None:
+                    self._deadline = max(self._deadline, time.monotonic() + AFTERWARDS_SECONDS)
+            self._wake()
+        if self._deferred is not None and threading.current_thread() is threading.main_thread():
+            number, self._deferred = self._deferred, None
+            self._handle(number, None)
+
+    def claim(self) -> None:
+        """Leave the last act to the calling thread, which ends the process at once."""
+        self._last_act.acquire()
 
     def over(self, error: BaseException) -> None:
         """End the process, if it was asked to, once its command is over; the caller is the main thread."""
@@ -123,12 +151,14 @@ class EndingWatch:
             # Whatever else was raised came of it.
             for stream in (sys.stdout, sys.stderr):
                 within(LAST_SECONDS, _flush, stream)
-            self._deadline = -math.inf
+            self._is_impatient = True
             self._wake()
             threading.Event().wait()
 
     def _handle(self, number: int, _: FrameType | None) -> None:
-        if self._raises:
+        if self._unfinished:
+            self._deferred = number
+        elif self._raises:
             self._raises = False
             self.request(128 + number, GRACE[128 + number])
             raise EndedError(128 + number)
@@ -137,7 +167,7 @@ class EndingWatch:
         # To set a terminal up from the background would stop the process.
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTTOU})
         while True:
-            left = self._deadline - time.monotonic()
+            left = self._limit - time.monotonic()
             for descriptor, event in self._poll.poll(None if left == math.inf else 1000 * max(left, 0.0)):
                 if descriptor == self._pipe:
                     for number in os.read(self._pipe, 4096):
@@ -146,8 +176,15 @@ class EndingWatch:
                     self._poll.unregister(descriptor)
                     if event & (select.POLLHUP | select.POLLERR):
                         self._asked(HUNG_UP)
-            if time.monotonic() >= self._deadline:
+            if time.monotonic() >= self._limit:
                 self._end()
+
+    @property
+    def _limit(self) -> float:
+        """When the process is ended, on the monotonic clock."""
+        if self._is_impatient:
+            return -math.inf
+        return self._deadline + (FINISHING_SECONDS if self._unfinished else 0.0)
 
     def _signalled(self, number: int) -> None:
         if 128 + number in GRACE:
@@ -155,7 +192,7 @@ class EndingWatch:
             if number == signal.SIGINT:
                 self._interrupts += 1
                 if self._interrupts > 1:
-                    self._deadline = -math.inf
+                    self._is_impatient = True
 
     def _asked(self, status: int) -> None:
         if self.request(status, GRACE[status]):
@@ -163,6 +200,7 @@ class EndingWatch:
 
     def _end(self) -> None:
         assert self.status is not None
+        self.claim()
         try:
             within(LAST_SECONDS, self._at_last, self.status)
             workers = sys.modules.get("multiprocessing")
@@ -207,10 +245,15 @@ def request(status: int, grace: float) -> None:
         _watch.request(status, grace)
 
 
-def extend(seconds: float) -> None:
-    """See `EndingWatch.extend`."""
+def finishing() -> AbstractContextManager[None]:
+    """See `EndingWatch.finishing`."""
+    return nullcontext() if _watch is None else _watch.finishing()
+
+
+def claim() -> None:
+    """See `EndingWatch.claim`."""
     if _watch is not None:
-        _watch.extend(seconds)
+        _watch.claim()
 
 
 def requested_status() -> int | None:
@@ -231,7 +274,9 @@ def _say(status: int) -> None:
     os.write(2, f"hough-tui: {WORDS[status]}\n".encode())
 
 
-def _flush(stream: IO[str]) -> None:
+def _flush(stream: IO[str] | None) -> None:
+    if stream is None:  # closed from the start
+        return
     with suppress(OSError, ValueError):  # its reader is gone, or it is closed
         stream.flush()
 

@@ -75,8 +75,8 @@ def open_application(
         known = [*bundled_paths(), *(command for command in commands() if command != "open")]
         refuse(True, unknown(name, known, "file, bundled set or command"))
     require_terminal()
-    from hough_tui.ui.app import run as run_application
     from hough_tui.ui.interpreter import leave
+    from hough_tui.ui.start import run as run_application
 
     leave(run_application(name))
 

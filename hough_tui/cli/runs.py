@@ -25,10 +25,7 @@ from hough_tui.cli.output import (
     write_document,
 )
 from hough_tui.cli.process import FAILED, announce_compilation, counted, finish, refuse, reported, tell
-from hough_tui.ending import extend
-
-KEEPING_SECONDS = 10.0
-"""The longest that keeping the finished trials of an ended run may take; a second interrupt drops them."""
+from hough_tui.ending import finishing
 
 
 @reported
@@ -72,7 +69,6 @@ def batch(
         finish(job, ", ".join(sets))
     except KeyboardInterrupt:
         if keep and job.progress.done.any():
-            extend(KEEPING_SECONDS)
             keep_run(result(job))
         raise
     run = result(job)
@@ -101,7 +97,8 @@ def keep_run(run: Any) -> int:
     from hough_tui.experiments.stores.folder import FolderStore
 
     try:
-        name = FolderStore().add(run)
+        with finishing():
+            name = FolderStore().add(run)
     except OSError as error:
         tell(f"the run could not be kept: {error.filename or ''}: {error.strerror or error}")
         return FAILED

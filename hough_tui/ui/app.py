@@ -16,6 +16,7 @@ from textual.filter import LineFilter
 from textual.screen import Screen
 from textual.worker import Worker, WorkerState
 
+from hough_tui import ending
 from hough_tui.ui import interpreter
 from hough_tui.ui.config import Config
 from hough_tui.ui.drawing.safe_text import Gate, show_what_acts
@@ -35,7 +36,7 @@ from hough_tui.ui.widgets.key_line import PALETTE
 if TYPE_CHECKING:
     from algorithms.errors import RequestError
     from algorithms.parameters import Path as FieldPath
-    from hough_tui.ui.autosave import Unsaved
+    from hough_tui.ui.autosave import Autosave, Unsaved
     from hough_tui.ui.workspace import Workspace
     from scenarios.model import ScenarioSet
 
@@ -44,6 +45,9 @@ AUTOSAVE_DELAY = 0.8
 
 NOTICE_SECONDS = 15.0
 """Seconds that a notice stays on the screen."""
+
+QUITTING_SECONDS = 0.6
+"""Seconds after a quit until the process is ended, if it has not come to its end."""
 
 WARM_AT_LATEST = 1.5
 """Seconds after a set is opened until kernels are loaded, even if it shows no draw for which they are."""
@@ -72,12 +76,17 @@ class HoughApp(App[None]):
         show_what_acts()
         self._gate = Gate()
         self._set_name, self._config = set_name, config
-        self.workspace: Workspace | None = None
+        self._autosave: Autosave | None = None
+        self.is_leaving = False
         self.wrong_setting: RequestError | None = None
-        self._unanswered: Unsaved | None = None
         self._compiling: str | None = None
         self._is_warming = False
         self._main = MainScreen()
+
+    @property
+    def workspace(self) -> Workspace | None:
+        """The set under edit; None before one is opened."""
+        return None if self._autosave is None else self._autosave.workspace
 
     def get_default_screen(self) -> Screen[Any]:
         """Return the main screen: its frame is painted before anything heavy is loaded."""
@@ -90,10 +99,8 @@ class HoughApp(App[None]):
     def on_mount(self) -> None:
         """Apply the settings, and begin to load what is heavy once the frame is painted."""
         from algorithms.notices import listen
-        from hough_tui.ui.terminal import on_ending_signals
 
         listen(self._notice)
-        on_ending_signals(self._end_by_signal)
         if self._config.theme in self.available_themes:
             self.theme = self._config.theme
         elif self._config.theme is not None:
@@ -178,15 +185,16 @@ class HoughApp(App[None]):
     def _opened(
         self, given: ScenarioSet, path: Path | None, kept: Unsaved | None, *, is_recovered: bool = False
     ) -> None:
+        from hough_tui.ui.autosave import Autosave
         from hough_tui.ui.workspace import Workspace
 
-        self.workspace = Workspace(given, path)
+        workspace = Workspace(given, path)
         if is_recovered:
-            self.workspace.forget_saved()
+            workspace.forget_saved()
+        autosave = self._autosave = Autosave(workspace, kept)
         # The first draw compiles some already.
         self._main.tell_state(self._compiling)
-        self._main.show_workspace(self.workspace)
-        self._unanswered = kept
+        self._main.show_workspace(workspace)
         self.set_timer(WARM_AT_LATEST, self._warm_once)
         if kept is not None:
 
@@ -194,10 +202,10 @@ class HoughApp(App[None]):
                 if key is None:
                     self.notify("They stay kept: Ctrl+O offers them again", markup=False)
                     return
-                self._unanswered = None
-                if key == "recover" and self.workspace is not None:
-                    self.workspace = self.workspace.recovered(kept.given)
-                    self._main.show_workspace(self.workspace)
+                autosave.undecided = None
+                if key == "recover":
+                    autosave.workspace = autosave.workspace.recovered(kept.given)
+                    self._main.show_workspace(autosave.workspace)
                 elif key == "forget":
                     kept.file.unlink(missing_ok=True)
 
@@ -273,39 +281,29 @@ class HoughApp(App[None]):
         self._main.show_set(self.workspace, part)
         self._autosave_timer = self.set_timer(AUTOSAVE_DELAY, self._keep_aside)
 
-    def _keep_aside(self) -> None:
-        workspace = self.workspace
-        if workspace is None:
-            return
-        from hough_tui.ui.autosave import forget, keep_aside
+    def keep_aside(self) -> None:
+        """Keep unsaved work aside, from any thread.
 
+        Raises
+        ------
+        OSError
+            Where it cannot be written.
+        """
+        if self._autosave is not None:
+            self._autosave.keep()
+
+    def _keep_aside(self) -> None:
         try:
-            if workspace.is_changed:
-                self._set_apart_unanswered()
-                keep_aside(workspace.given, workspace.path)
-            elif self._unanswered is None:
-                # Work that is not decided about is not forgotten, whatever ends the application.
-                forget(workspace.given.name, workspace.path)
+            self.keep_aside()
         except OSError as error:
             self.notify(
                 f"Unsaved work cannot be kept aside: {error.strerror}", severity="warning", markup=False
             )
 
-    def _set_apart_unanswered(self) -> None:
-        from hough_tui.ui.autosave import set_apart
-
-        if self._unanswered is not None:
-            with suppress(FileNotFoundError):  # another session may have decided
-                set_apart(self._unanswered)
-            self._unanswered = None
-
     def _forget(self, name: str, path: Path | None) -> None:
-        """Remove what is kept aside of a set, but not what was not decided about."""
-        from hough_tui.ui.autosave import forget
-
+        assert self._autosave is not None
         try:
-            self._set_apart_unanswered()
-            forget(name, path)
+            self._autosave.forget(name, path)
         except OSError as error:
             self.notify(f"Work kept aside stays there: {error.strerror}", severity="warning", markup=False)
 
@@ -446,6 +444,10 @@ class HoughApp(App[None]):
         self.action_leave()
 
     def _leave(self, status: int = 0) -> None:
+        self.is_leaving = True
+        # A kernel that is at work, or a terminal that nobody reads, would have it wait.
+        ending.request(status, QUITTING_SECONDS)
+
         async def close_and_exit() -> None:
             await self._main.leave()
             self.exit(return_code=status)
@@ -478,10 +480,12 @@ class HoughApp(App[None]):
             answer,
         )
 
-    def _end_by_signal(self, status: int) -> None:
-        """Keep unsaved work aside and end, when the process is asked to or has lost its terminal."""
-        self._keep_aside()
-        self._leave(status)
+    def end(self, status: int) -> None:
+        """Keep unsaved work aside, if possible, and have the application end; any thread may ask for it."""
+        try:
+            self.keep_aside()
+        finally:
+            self.call_later(self._leave, status)
 
     @on(Worker.StateChanged)
     def _tell_failure(self, event: Worker.StateChanged) -> None:
@@ -491,23 +495,3 @@ class HoughApp(App[None]):
 
     def _tell_error(self, error: BaseException) -> None:
         self.push_screen(telling("That did not work", f"{error}" or type(error).__name__))
-
-
-def run(set_name: str | None) -> int:
-    """Open the application and return its exit status.
-
-    Raises
-    ------
-    RequestError
-        Where the settings are wrong.
-    """
-    from hough_tui.ui.config import read_config
-    from hough_tui.ui.terminal import draw_in_any_encoding
-
-    interpreter.prepare()
-    draw_in_any_encoding()
-    app = HoughApp(set_name, read_config())
-    app.run()
-    if app.wrong_setting is not None:
-        raise app.wrong_setting
-    return app.return_code or 0

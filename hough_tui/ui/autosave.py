@@ -5,6 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import threading
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -12,6 +14,7 @@ from typing import Any
 
 from algorithms.errors import RequestError
 from hough_tui.directories import state_directory
+from hough_tui.ui.workspace import Workspace
 from scenarios.files.atomic import replace_file
 from scenarios.files.marked_yaml import write
 from scenarios.files.set_files import parse_set, set_data
@@ -34,6 +37,56 @@ class Unsaved:
     path: Path | None
     when: str
     file: Path
+
+
+class Autosave:
+    """Keeper of the unsaved work of a workspace; any thread may call it, at any time.
+
+    Attributes
+    ----------
+    workspace : the set under edit
+    undecided : work kept aside before, about which nobody has decided yet
+    """
+
+    def __init__(self, workspace: Workspace, undecided: Unsaved | None) -> None:
+        self.workspace = workspace
+        self.undecided = undecided
+        self._lock = threading.Lock()
+
+    def keep(self) -> None:
+        """Keep unsaved work aside; forget what was kept where all is saved.
+
+        Raises
+        ------
+        OSError
+            Where the folder cannot be written.
+        """
+        with self._lock:
+            workspace = self.workspace
+            if workspace.is_changed:
+                self._set_undecided_apart()
+                keep_aside(workspace.given, workspace.path)
+            elif self.undecided is None:
+                # Work that is not decided about is not forgotten, whatever ends the application.
+                forget(workspace.given.name, workspace.path)
+
+    def forget(self, name: str, path: Path | None) -> None:
+        """Remove what is kept aside of a set, but not what was not decided about.
+
+        Raises
+        ------
+        OSError
+            Where the folder cannot be written.
+        """
+        with self._lock:
+            self._set_undecided_apart()
+            forget(name, path)
+
+    def _set_undecided_apart(self) -> None:
+        if self.undecided is not None:
+            with suppress(FileNotFoundError):  # another process may have decided
+                set_apart(self.undecided)
+            self.undecided = None
 
 
 def keep_aside(given: ScenarioSet, path: Path | None) -> Path:

@@ -5,7 +5,10 @@ from __future__ import annotations
 import gc
 import os
 import sys
+from contextlib import suppress
 from multiprocessing import resource_tracker
+
+from hough_tui import ending
 
 SWITCH_INTERVAL = 0.001
 """Seconds after which a thread that computes hands the interpreter over, if another one asks for it."""
@@ -32,6 +35,8 @@ def leave(status: int) -> None:
 
     Only to be called when no thread writes any more.
     """
-    sys.stdout.flush()
-    sys.stderr.flush()
+    with suppress(OSError):  # the terminal may have gone
+        sys.stdout.flush()
+        sys.stderr.flush()
+    ending.claim()
     os._exit(status)

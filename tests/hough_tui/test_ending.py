@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -17,7 +18,7 @@ PATIENCE = 20.0
 
 COMMAND = "from hough_tui.__main__ import main; main()"
 
-# The command, with a thread that writes a file as soon as a cell is done.
+# The command, with a thread that writes a file as soon as a trial is done.
 SIGNALLING = f"""
 import pathlib, threading, time
 from hough_tui.experiments.engines import threads as engine
@@ -26,7 +27,7 @@ class Signalling(engine.Job):
     def __init__(self, *arguments):
         super().__init__(*arguments)
         def watch():
-            while not self.progress.cells_done:
+            while not self.progress.done.any():
                 time.sleep(0.01)
             pathlib.Path("done").touch()
         threading.Thread(target=watch, daemon=True).start()
@@ -35,34 +36,10 @@ engine.Job = Signalling
 {COMMAND}
 """
 
-GRID = "{theta_bins: 1800, rho_min: -150, rho_step: 0.1, rho_bins: 4000}"
-SEARCH = f"maxima: 100000000, suppress_theta: 0, suppress_rho: 0, grid: {GRID}"
-ENDLESS = f"{{name: endless, initiator: sequential, {SEARCH}}}"
-
-SET = f"""\
-schema: 1
-name: long
-scenarios:
-  - name: crowd
-    scans: 3
-    interval: 4
-    region: {{x: [0, 100], y: [0, 100]}}
-    sensor: {{sigma: 0.1}}
-    clutter: [{{rate: 500}}]
-    targets: [{{position: [40, 20], velocity: [0.3, 0.18]}}]
-initiators:
-  - {{name: standard, votes: 30, grid: {{theta_bins: 90, rho_min: -150, rho_step: 0.6, rho_bins: 1000}}}}
-  - {ENDLESS}
-experiments:
-  - {{name: quick, initiators: [standard], trials: 20, seed: 3, criterion: {{plots: 2}}}}
-  - {{name: long, initiators: [endless], trials: 20, seed: 4, criterion: {{plots: 2}}}}
-"""
-
 
 @pytest.fixture
-def start(tmp_path):
+def start(tmp_path, long_set):
     """Start a Python program on a command line; it is killed in the end."""
-    (tmp_path / "long.yaml").write_text(SET)
     with contextlib.ExitStack() as stack:
 
         def run(
@@ -119,7 +96,7 @@ def test_finished_trials_outlive_an_end_in_a_kernel(number, status, words, start
     (name,) = store.names()
     document = store.document(name)
     assert document["complete"] is False
-    assert [row["trials"] for row in document["rows"]] == [20]
+    assert [row["trials"] for row in document["rows"]] == [1]
 
 
 def test_a_reader_that_stalls_does_not_hold_the_end_up(start, tmp_path):
@@ -137,10 +114,11 @@ def test_a_reader_that_stalls_does_not_hold_the_end_up(start, tmp_path):
     os.close(reading)
 
 
-def test_an_interrupt_reaches_a_kernel_of_the_main_thread(start, tmp_path):
+def test_an_interrupt_reaches_a_kernel_of_the_main_thread(start, long_set, tmp_path):
     rows = "\n".join(f"{plot % 3},{plot * 7 % 100},{plot * 13 % 100}" for plot in range(600))
     (tmp_path / "plots.csv").write_text(f"scan,x,y\n{rows}\n")
-    (tmp_path / "endless.yaml").write_text(f"{{{SEARCH}}}")
+    parameters = re.search("initiator: sequential, (.*)", long_set.read_text()).group(1)
+    (tmp_path / "endless.yaml").write_text(f"{{{parameters}")
     process = start(
         COMMAND, "initiate", "plots.csv", "-i", "sequential", "--config", "endless.yaml", "--json"
     )
@@ -161,8 +139,8 @@ def test_a_termination_reaches_a_run_that_compiles(start, tmp_path):
     assert err.splitlines()[1:] == ["hough-tui: terminated"]
 
 
-def test_a_hangup_that_nohup_ignores_stays_ignored(start, tmp_path):
-    short = SET.replace("[endless], trials: 20", "[standard], trials: 300")
+def test_a_hangup_that_nohup_ignores_stays_ignored(start, long_set, tmp_path):
+    short = long_set.read_text().replace("trials: 20", "initiators: [standard], trials: 300")
     (tmp_path / "short.yaml").write_text(short)
     process = start(
         SIGNALLING,
@@ -190,7 +168,7 @@ class Endless(plugin.Initiator):
 """
 
 
-def test_worker_processes_end_with_the_command(start, tmp_path):
+def test_worker_processes_end_with_the_command(start, long_set, tmp_path):
     site = tmp_path / "site"
     (site / "endless-1.0.dist-info").mkdir(parents=True)
     (site / "endless.py").write_text(PLUG_IN)
@@ -200,7 +178,8 @@ def test_worker_processes_end_with_the_command(start, tmp_path):
     (site / "endless-1.0.dist-info" / "entry_points.txt").write_text(
         "[hough_tui.initiators]\nendless = endless:Endless\n"
     )
-    (tmp_path / "plain.yaml").write_text(SET.replace(ENDLESS, "{name: endless}"))
+    plain = re.sub("{name: endless.*", "{name: endless}", long_set.read_text())
+    (tmp_path / "plain.yaml").write_text(plain)
     workers = tmp_path / "workers"
     workers.mkdir()
     path = os.pathsep.join([str(site), str(Path(__file__).parents[2])])

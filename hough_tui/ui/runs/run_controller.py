@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from algorithms.errors import RequestError, WorkFailedError
+from hough_tui import ending
 from hough_tui.experiments.cases import Row
 from hough_tui.experiments.engines.threads import Job
 from hough_tui.experiments.plan import plan_run
@@ -137,14 +138,17 @@ class Running:
             self._tell(Ended(rows, problem=problem_words(error)))
 
     def _fill(self, live: LiveRun) -> None:
-        pause = PERIOD
-        while not live.job.wait(pause):
-            if self._stopped.is_set():
-                continue
+        due = 0.0
+        while not live.job.wait(PERIOD):
+            if self._is_leaving:
+                return  # the trials that are under way may take minutes
             began = time.monotonic()
+            if self._stopped.is_set() or began < due:
+                continue
             live.rows = live.snapshot()
             self._tell(Filled(live.rows))
-            pause = max(PERIOD, (time.monotonic() - began) / SHARE)
+            now = time.monotonic()
+            due = now + (now - began) / SHARE
 
     def _end(self, live: LiveRun) -> Ended:
         job = live.job
@@ -163,7 +167,8 @@ def keep(live: LiveRun) -> tuple[str | None, str | None]:
     """Keep a run; return its name, or why it could not be kept."""
     store = FolderStore()
     try:
-        return store.add(live.whole()), None
+        with ending.finishing():
+            return store.add(live.whole()), None
     except OSError as error:
         return None, (
             f"The run could not be kept in {store.folder}: {error.strerror or error}. "

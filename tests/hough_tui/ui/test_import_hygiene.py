@@ -98,7 +98,7 @@ def test_only_the_application_imports_textual():
 
 @pytest.mark.parametrize("package", ["hough_tui.ui", "hough_tui.cli"])
 def test_nothing_below_imports_the_application(package):
-    above = (Path("hough_tui", "ui"), Path("hough_tui", "cli"))
+    above = [Path("hough_tui", name) for name in ("ui", "cli", "__main__.py")]
     wrong = [
         path
         for path in SOURCES

@@ -35,7 +35,7 @@ PROJECT = Path(__file__).parents[3]
 class Terminal:
     """A pseudo-terminal of 80 × 24 with the command in it, as its controlling terminal."""
 
-    def __init__(self, home: Path, term: str, *arguments: str) -> None:
+    def __init__(self, home: Path, term: str, *arguments: str, **variables: str) -> None:
         self.home = home
         self.master, self.slave = os.openpty()
         fcntl.ioctl(self.slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
@@ -47,7 +47,7 @@ class Terminal:
             stdout=self.slave,
             stderr=self.slave,
             cwd=home,
-            env=environment(home, term),
+            env=environment(home, term) | variables,
             start_new_session=True,
         )
 
@@ -67,6 +67,13 @@ class Terminal:
         while select.select([self.master], [], [], seconds)[0]:
             self.output += os.read(self.master, 65536)
             seconds = 0.0
+
+    def read_to_the_end(self) -> None:
+        """Take what an ended command has left in the terminal, which comes in pieces."""
+        before = -1
+        while len(self.output) > before:
+            before = len(self.output)
+            self.read(0.2)
 
     @property
     def text(self) -> str:
@@ -100,6 +107,19 @@ class Terminal:
         self.read(0.0)
         return self.process.returncode
 
+    def fill(self) -> None:
+        """Write to it until it takes no more: as nobody reads, whoever writes from now on waits."""
+        own = os.open(os.ttyname(self.slave), os.O_WRONLY | os.O_NOCTTY | os.O_NONBLOCK)
+        refusals = 0
+        while refusals < 20:  # one may be due to the command, which writes at that moment
+            try:
+                os.write(own, b" ")
+                refusals = 0
+            except BlockingIOError:
+                refusals += 1
+                time.sleep(0.002)
+        os.close(own)
+
     def hang_up(self) -> None:
         """Close the terminal, as a dropped connection does."""
         os.close(self.slave)
@@ -130,8 +150,7 @@ def assert_restored(terminal: Terminal) -> None:
 
 
 def edited(terminal: Terminal) -> None:
-    """Open the bundled set, type another number of scans, and wait until it is kept aside."""
-    terminal.until("two-crossing")
+    """Open a set, type another number of scans, and wait until it is kept aside."""
     terminal.until("Interval")
     # The form has its cursor in the number of scans when the view is asked for.
     since = terminal.press(F2)
@@ -168,50 +187,65 @@ def test_start_open_run_and_quit_leave_the_terminal_as_it_was(tmp_path, term):
     assert [row["trials"] for row in document["rows"]] == [1000] * 6
 
 
-def test_termination_leaves_the_terminal_clean_and_the_work_aside(tmp_path):
-    with Terminal(tmp_path, "xterm-256color", "course-report") as terminal:
+ENDINGS = {"TERM": 143, "HUP": 129, "closed": 129}
+
+
+@pytest.mark.parametrize(
+    ("state", "way", "is_read"),
+    [
+        ("at rest", "TERM", True),
+        ("compiling", "TERM", False),
+        ("running", "HUP", False),
+        ("running", "closed", True),
+    ],
+)
+def test_an_ending_keeps_the_work_aside(state, way, is_read, long_set, tmp_path):
+    cache = {"XDG_CACHE_HOME": str(tmp_path / "cold")} if state == "compiling" else {}
+    with Terminal(tmp_path, "xterm-256color", str(long_set), **cache) as terminal:
         edited(terminal)
         (kept,) = kept_aside(tmp_path)
         kept.unlink()
-        terminal.process.send_signal(signal.SIGTERM)
-        assert terminal.status() == 143
-        assert_restored(terminal)
+        if state == "running":
+            since = terminal.press(F6)
+            terminal.until("40 trials", since)
+            since = terminal.press("r")
+            terminal.until("Cancel", since)
+        if not is_read:
+            terminal.fill()
+        if way == "closed":
+            terminal.hang_up()
+            assert terminal.process.wait(PATIENCE) == ENDINGS[way]
+        else:
+            terminal.process.send_signal(getattr(signal, f"SIG{way}"))
+            assert terminal.process.wait(PATIENCE) == ENDINGS[way]
+            terminal.read_to_the_end()
+            assert_restored(terminal)
         # It is written at the end too, not only a while after the last key.
         (kept,) = kept_aside(tmp_path)
         assert "scans: 9" in json.loads(kept.read_text(encoding="utf-8"))["set"]
 
 
-def test_a_hangup_signal_does_the_same(tmp_path):
+def test_a_terminal_that_is_closed_at_the_start_ends_it(tmp_path):
     with Terminal(tmp_path, "xterm-256color", "course-report") as terminal:
-        edited(terminal)
-        (kept,) = kept_aside(tmp_path)
-        kept.unlink()
-        terminal.process.send_signal(signal.SIGHUP)
-        assert terminal.status() == 129
-        assert_restored(terminal)
-        assert len(kept_aside(tmp_path)) == 1
-
-
-def test_a_terminal_that_is_closed_ends_it_with_the_work_aside(tmp_path):
-    with Terminal(tmp_path, "xterm-256color", "course-report") as terminal:
-        edited(terminal)
-        (kept,) = kept_aside(tmp_path)
-        kept.unlink()
+        while TO_ALTERNATE.encode() not in terminal.output:
+            terminal.read()
         terminal.hang_up()
         assert terminal.process.wait(PATIENCE) == 129
-        assert len(kept_aside(tmp_path)) == 1
 
 
-def test_termination_during_a_run_ends_it(tmp_path):
-    with Terminal(tmp_path, "xterm-256color", "course-report") as terminal:
-        terminal.until("two-crossing")
+def test_a_quit_does_not_wait_for_a_kernel(long_set, tmp_path):
+    with Terminal(tmp_path, "xterm-256color", str(long_set)) as terminal:
+        terminal.until("crowd")
         since = terminal.press(F6)
-        terminal.until("6,000 trials", since)
+        terminal.until("40 trials", since)
         since = terminal.press("r")
-        terminal.until("Cancel", since)
-        terminal.process.send_signal(signal.SIGTERM)
-        assert terminal.status() == 143
+        terminal.until("1 of 40 trials", since)
+        terminal.press(CTRL_Q)
+        assert terminal.status() == 0
         assert_restored(terminal)
+    (run,) = (tmp_path / "data" / "hough-tui" / "runs").iterdir()
+    document = json.loads((run / "result.json").read_text(encoding="utf-8"))
+    assert [row["trials"] for row in document["rows"]] == [1]
 
 
 @pytest.mark.parametrize("arguments", [[], ["course-report"]], ids=["bare", "with a set"])
