@@ -6,6 +6,7 @@ import os
 import runpy
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import numpy as np
@@ -73,7 +74,7 @@ def test_checked_code_is_kept_apart(monkeypatch):
 def conversions(function) -> list[str]:
     """Return the calls in a kernel that may make a whole number of a float."""
     found = []
-    for node in ast.walk(ast.parse(inspect.getsource(function))):
+    for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(function)))):
         if not isinstance(node, ast.Call) or ast.unparse(node.func).removeprefix("np.") not in CONVERSIONS:
             continue
         names = {part.id for part in ast.walk(node.args[0]) if isinstance(part, ast.Name)}
