@@ -201,7 +201,7 @@ def test_the_numeric_fields_of_a_scenario_can_be_swept():
         "region.x.0", "region.x.1", "region.y.0", "region.y.1", "clutter.0.rate",
         "sensor.sigma", "sensor.sigma.0", "sensor.sigma.1", "sensor.detection_probability",
         "targets.0.position.0", "targets.0.position.1", "targets.0.velocity.0", "targets.0.velocity.1",
-        "targets.0.spread",
+        "targets.0.motion.process_noise", "targets.0.spread",
         "targets.0.birth", "targets.0.death",
     }  # fmt: skip
 
