@@ -110,7 +110,7 @@ def test_a_file_larger_than_any_set_is_not_read(tmp_path):
 
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="a device without an end")
 def test_a_file_without_an_end_is_not_read():
-    assert "the limit is 0.001" in refusal(read_text, Path("/dev/zero"), 1000)
+    assert "the limit is 0.5 MiB" in refusal(read_text, Path("/dev/zero"), 2**19)
 
 
 @pytest.mark.parametrize(("content", "line"), [(b"\xff", 1), (b"a\nb\n\xc3(", 3), (b"\n\nx\xe9y\n", 3)])
