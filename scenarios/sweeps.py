@@ -28,6 +28,9 @@ from scenarios.scenes import Scene
 MOST_POINTS = 20_000
 """The most points of one experiment."""
 
+MOST_SHOWN = 20
+"""The most fields of a part that a message lists: their paths are long."""
+
 LONGEST_INDEX = 9
 """The most digits of an index in a list."""
 
@@ -198,14 +201,14 @@ def place_among(key: str, elements: Elements) -> tuple[str, Path]:
     if len(found) == 1:
         return found[0]
     if found:
-        names = listed([written(part, path) for part, path in found])
+        names = listed([written(part, path) for part, path in found], MOST_SHOWN)
         message = f"'{shortened(key)}' may mean {names}; write one of them"
         raise FieldError(Problem(("sweep", key), message, on_key=True))
     every = [written(part, path) for part in known for path in known[part]]
     ends = [str(path[-1]) for part in known for path in known[part] if isinstance(path[-1], str)]
     hint = nearest(key, [*every, *ends])
     # Of each part some, where a part has very many.
-    fields = ", ".join(listed([written(part, path) for path in known[part]]) for part in known)
+    fields = ", ".join(listed([written(part, path) for path in known[part]], MOST_SHOWN) for part in known)
     message = f"there is no numeric field '{shortened(key)}'{hint} (known: {fields})"
     asked = [wanted[0]] if wanted[0] in known else list(known)
     shared = " and every ".join(str(part) for part in asked if len(elements[str(part)]) > 1)

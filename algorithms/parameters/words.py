@@ -8,7 +8,7 @@ from collections.abc import Sequence
 LONGEST_TEXT = 60
 """The most characters of a text from outside that a message repeats."""
 
-MOST_NAMES = 20
+MOST_NAMES = 40
 """The most names that a message lists."""
 
 
@@ -17,10 +17,10 @@ def shortened(text: str, longest: int = LONGEST_TEXT) -> str:
     return text if len(text) <= longest else text[: longest - 1] + "…"
 
 
-def listed(names: Sequence[str]) -> str:
+def listed(names: Sequence[str], most: int = MOST_NAMES) -> str:
     """Return names as a list in words, and how many more there are where they are many."""
-    shown = [shortened(name) for name in names[:MOST_NAMES]]
-    more = [f"… {len(names) - MOST_NAMES:,} more"] if len(names) > MOST_NAMES else []
+    shown = [shortened(name) for name in names[:most]]
+    more = [f"… {len(names) - most:,} more"] if len(names) > most else []
     return ", ".join([*shown, *more]) or "none"
 
 

@@ -53,7 +53,7 @@ def charted(key: str) -> AnyMetric:
     """
     known = [metric.key for metric in METRICS.values() if metric.estimator.is_number]
     if key not in known:
-        raise RequestError(unknown(key, known, "metric"))
+        raise RequestError(f"--metric: {unknown(key, known, 'metric')}")
     return METRICS[key]
 
 

@@ -164,7 +164,7 @@ def _names(line: int, header: Sequence[str], source: str, form: TableForm) -> li
             if near
             else ""
         )
-        has = listed([repr(shortened(name)) for name in names])
+        has = listed([repr(shortened(name)) for name in names], 20)
         raise RequestError(f"{source}:{line}: there is {' and '.join(lacks)}; the header has {has}{hint}")
     return names
 
