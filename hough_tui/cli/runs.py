@@ -73,15 +73,21 @@ def batch(
         raise
     run = result(job)
     status = keep_run(run) if keep else 0
-    # Files first: what cannot be printed must not cost them.
+    # The file first: what cannot be printed must not cost it, nor it what is printed.
+    failure: OSError | None = None
     if csv is not None and str(csv) != "-":
-        replace_file(csv, csv_text(run.document["rows"]))
+        try:
+            replace_file(csv, csv_text(run.document["rows"]))
+        except OSError as error:
+            failure = error
     if as_json:
         write_document(document_text(run.document))
     elif str(csv) == "-":
         write_document(csv_text(run.document["rows"]))
     else:
         print_rates(run.document["rows"], shown, plot)
+    if failure is not None:
+        raise failure
     seconds = job.seconds
     tell(
         f"{counted(len(plan.cells), 'cell')}, {counted(plan.trials, 'trial')} in {seconds:.1f} s, "

@@ -251,7 +251,7 @@ def test_a_run_is_kept_and_found_again(cli, small, data_home):
     assert folder.name == name
     status, listed, _ = cli("results", "list", "--json")
     assert status == 0
-    assert json.loads(listed) == [name]
+    assert json.loads(listed)["runs"] == [name]
     assert name in cli("results", "list")[1]
     status, shown, _ = cli("results", "show", name, "--json")
     assert status == 0
@@ -271,7 +271,7 @@ def test_the_newest_run_is_listed_first(cli, small, monkeypatch):
     while int(time.time()) == int(began):  # names tell whole seconds
         time.sleep(0.02)
     second = re.search(r"kept as (\S+)", cli("batch", small)[2]).group(1)
-    assert json.loads(cli("results", "list", "--json")[1]) == [second, first]
+    assert json.loads(cli("results", "list", "--json")[1])["runs"] == [second, first]
 
 
 def test_no_keep_keeps_nothing(cli, small, data_home):
@@ -282,7 +282,7 @@ def test_no_keep_keeps_nothing(cli, small, data_home):
     status, out, err = cli("results", "list")
     assert (status, out) == (0, "")
     assert err.startswith("hough-tui: no run has been kept yet")
-    assert json.loads(cli("results", "list", "--json")[1]) == []
+    assert json.loads(cli("results", "list", "--json")[1])["runs"] == []
 
 
 @pytest.mark.parametrize("form", [[], ["--json"]])

@@ -1,12 +1,13 @@
 """The key bindings: each has an id and a description, and other keys by the settings file."""
 
 import re
+from types import SimpleNamespace
 
 import pytest
 from textual.binding import Binding
 
 from algorithms.errors import RequestError
-from hough_tui.ui import app as application
+from hough_tui.ui import start as application
 from hough_tui.ui.app import HoughApp
 from hough_tui.ui.config import config_file, read_config
 from hough_tui.ui.key_bindings import declared_bindings, require_known
@@ -57,6 +58,8 @@ def test_an_unknown_id_ends_the_application(home, drive, monkeypatch):
     # What is wrong goes to the one who called, once the terminal is as it was.
     monkeypatch.setattr(HoughApp, "run", lambda self: setattr(self, "wrong_setting", ended.wrong_setting))
     monkeypatch.setattr(application.interpreter, "prepare", lambda: None)
+    monkeypatch.setattr(application, "Terminal", lambda: SimpleNamespace(restore=None, descriptor=0))
+    monkeypatch.setattr(application.ending, "hand_over", lambda *_: None)
     with pytest.raises(RequestError, match=r"app\.qit"):
         application.run("course-report")
 
