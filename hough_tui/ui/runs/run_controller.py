@@ -186,5 +186,5 @@ def problem_words(error: Exception) -> str:
 
 
 def _is_small(live: LiveRun) -> bool:
-    arrays = (values for columns in live.job.columns for values in columns.arrays().values())
-    return sum(int(values.nbytes) for values in arrays) <= KEPT_ON_LEAVING
+    trials = zip(live.job.plan.cells, live.job.progress.done, strict=True)
+    return sum(cell.bytes_a_trial * int(done) for cell, done in trials) <= KEPT_ON_LEAVING
